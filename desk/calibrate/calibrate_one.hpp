@@ -15,8 +15,8 @@
 
 namespace offnominal::desk {
 
-/// Whether every joint of all these recordings has a velocity of its own: a bound that is calibrated
-/// on them holds its error.
+/// Whether every joint of all these recordings has a velocity of its own: a bound that is
+/// calibrated on them holds its error.
 [[nodiscard]] bool have_velocities(const std::vector<Log>& logs, const std::vector<Log>& holdout);
 
 /// Of recordings of which the first `given` are to calibrate on. Throws InputError where they are

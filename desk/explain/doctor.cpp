@@ -115,8 +115,8 @@ std::optional<SlowSignals> slow_signals(const Log& log, double cutoff_of_rate) {
   slow.motion = thin_motion_of(log, plan, stride);
   slow.torque.resize(slow.motion.sample_count(), log.tau.cols());
   for_every_column(log.tau, [&](Index joint) {
-    slow.torque.col(joint) =
-        every_nth(zero_phase_low_pass(log.tau.col(joint), plan.position_cutoff_hz, rate_hz), stride);
+    slow.torque.col(joint) = every_nth(
+        zero_phase_low_pass(log.tau.col(joint), plan.position_cutoff_hz, rate_hz), stride);
   });
   slow.payload = log.payload;
   return slow;

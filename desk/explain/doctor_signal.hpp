@@ -18,9 +18,8 @@ namespace offnominal::desk {
 template <typename Work>
 auto of_every_joint(const Log& log, const Work& work) {
   std::vector<decltype(work(Eigen::Index{}))> all(static_cast<std::size_t>(log.q.cols()));
-  for_every_column(log.q, [&](Eigen::Index joint) {
-    all[static_cast<std::size_t>(joint)] = work(joint);
-  });
+  for_every_column(log.q,
+                   [&](Eigen::Index joint) { all[static_cast<std::size_t>(joint)] = work(joint); });
   return all;
 }
 

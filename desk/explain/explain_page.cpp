@@ -124,18 +124,10 @@ report::Table change_table(const Explanation& e) {
   report::Table table;
   table.caption = e.changes_between ? "What changes from the recordings before to those after"
                                     : "What changes in the middle of a recording";
-  table.columns = {{"effect", "", ".4g"},
-                   {"joint", "", "d"},
-                   {"recording", "", "d"},
-                   {"at", "s", ".2f"},
-                   {"95 % from", "s", ".2f"},
-                   {"to", "s", ".2f"},
-                   {"gone at", "s", ".2f"},
-                   {"parameter", "", ".4g"},
-                   {"changes by", "", ".3g"},
-                   {"95 % from ", "", ".3g"},
-                   {"to ", "", ".3g"},
-                   {"unit", "", ".4g"},
+  table.columns = {{"effect", "", ".4g"},     {"joint", "", "d"},        {"recording", "", "d"},
+                   {"at", "s", ".2f"},        {"95 % from", "s", ".2f"}, {"to", "s", ".2f"},
+                   {"gone at", "s", ".2f"},   {"parameter", "", ".4g"},  {"changes by", "", ".3g"},
+                   {"95 % from ", "", ".3g"}, {"to ", "", ".3g"},        {"unit", "", ".4g"},
                    {"p", "", ".2g"}};
   for (const Change& one : e.changes) {
     std::string name(one.what.name());

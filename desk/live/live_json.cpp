@@ -106,8 +106,7 @@ ordered_json faults_of(const Live& live) {
 }
 
 ordered_json controller_json(const ControllerWord& word) {
-  ordered_json json{
-      {"state", sil::name_of(word.state)}, {"fault", nullptr}, {"slows", word.slows}};
+  ordered_json json{{"state", sil::name_of(word.state)}, {"fault", nullptr}, {"slows", word.slows}};
   if (word.state == hal::ControllerState::kFault) {
     json["fault"] = controller::name_of(word.fault);
   }

@@ -79,8 +79,8 @@ template <int N, typename Scalar, typename Space>
         0.5 * (sim::position_step_rad(encoder) + static_cast<double>(hal::kPositionPerCount));
     const auto max_acceleration = static_cast<Scalar>(*settings.max_acceleration);
     const auto position_error = static_cast<Scalar>(half_count);
-    config.velocity_observer = best_velocity_observer(config.velocity_observer.period_s,
-                                                      max_acceleration, position_error);
+    config.velocity_observer =
+        best_velocity_observer(config.velocity_observer.period_s, max_acceleration, position_error);
     if (!robot.bound || !robot.bound->covers_velocities) {
       detail::add_velocity_error(
           robot, velocity_error_bound(config.velocity_observer, max_acceleration, position_error),

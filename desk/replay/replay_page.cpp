@@ -172,8 +172,8 @@ Table alarm_table(const Replay& replay) {
   if (in_torque) table.columns.push_back({"joints, the first to cross first", ""});
   for (const Alarm& alarm : replay.alarms) {
     if (table.rows.size() == kMarkedAlarms) {
-      table.note = fmt::format("The first {} of {}; `offnominal replay --json` has them all.", kMarkedAlarms,
-                               replay.alarms.size());
+      table.note = fmt::format("The first {} of {}; `offnominal replay --json` has them all.",
+                               kMarkedAlarms, replay.alarms.size());
       break;
     }
     table.rows.push_back({alarm.start_s, alarm.end_s, alarm.max_error_to_threshold});
@@ -203,8 +203,8 @@ Table blind_table(const Replay& replay) {
   table.columns = {{"from", "s", ".3f"}, {"to", "s", ".3f"}, {"samples refused", "1", "d"}};
   for (const BlindStretch& one : replay.blind) {
     if (table.rows.size() == kMarkedAlarms) {
-      table.note = fmt::format("The first {} of {}; `offnominal replay --json` has them all.", kMarkedAlarms,
-                               replay.blind.size());
+      table.note = fmt::format("The first {} of {}; `offnominal replay --json` has them all.",
+                               kMarkedAlarms, replay.blind.size());
       break;
     }
     table.rows.push_back({one.start_s, one.end_s, static_cast<double>(one.samples)});

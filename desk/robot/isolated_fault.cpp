@@ -29,8 +29,9 @@ std::string what_it_is(const IsolatedFault& fault) {
     case FaultKind::kPayload:
       return (more ? "payload gained, " : "payload lost, ") + range_of(fault, sign, fault.unit);
     case FaultKind::kContact:
-      return fmt::format("contact with its link or one behind it, torques of joints up to {:.3g} {}",
-                         std::abs(fault.size), fault.unit);
+      return fmt::format(
+          "contact with its link or one behind it, torques of joints up to {:.3g} {}",
+          std::abs(fault.size), fault.unit);
     case FaultKind::kEncoderStuck:
       return "its encoder sticks";
     case FaultKind::kEncoderJump:

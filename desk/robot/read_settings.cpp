@@ -210,11 +210,10 @@ const std::vector<std::string>& arming_keys() {
 
 const std::vector<std::string>& bound_keys() {
   static const std::vector<std::string> keys{
-      "kind",       "source",         "value",          "scale",
-      "offset",     "matrix",         "variable",       "joint",
-      "at",         "velocity_error", "momentum_error", "over_position",
-      "over_speed", "over_torque",    "act_ratio",      "fast",
-      "covers_velocities"};
+      "kind",           "source",           "value",      "scale",       "offset",
+      "matrix",         "variable",         "joint",      "at",          "velocity_error",
+      "momentum_error", "over_position",    "over_speed", "over_torque", "act_ratio",
+      "fast",           "covers_velocities"};
   return keys;
 }
 

@@ -73,7 +73,7 @@ struct NotHeld {
 
 /// A motion that the controller slowed at its second level.
 struct Slowed {
-  double time_s = 0;     // of the run, since the arm was free to move
+  double time_s = 0;  // of the run, since the arm was free to move
   SlowDownConfig<double> as;
   bool reached = false;  // the pace, before the run ended
 };

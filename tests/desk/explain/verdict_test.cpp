@@ -106,7 +106,8 @@ TEST(Verdict, OfAJointThatIsHeldAgainstItsModelSaysSoFirst) {
   e.excitation.push_back({});
   e.improved.joints.resize(2);
   judge_whole(e);
-  EXPECT_THAT(e.words, ::testing::StartsWith("The largest error is that of joint 2, 3.3 N m or 33 %"));
+  EXPECT_THAT(e.words,
+              ::testing::StartsWith("The largest error is that of joint 2, 3.3 N m or 33 %"));
   EXPECT_THAT(e.words, HasSubstr("Something acts on joint 1"));
   e.joints[1].rms_before = 0.2;
   judge_whole(e);

@@ -302,8 +302,8 @@ TEST(LiveBench, SaysWhyARunHasEndedAndBeginsItAgain) {
   EXPECT_GT(again.t_s, end.t_s);
 }
 
-// GIVEN a scenario with a fault of its own and a controller that slows at it THEN the page is told of
-// both.
+// GIVEN a scenario with a fault of its own and a controller that slows at it THEN the page is told
+// of both.
 TEST(LiveBench, TellsOfTheScenariosFaultsAndOfASlowedMotion) {
   const RobotDescription robot = test::by_joint_robot(4, kBoundNm);
   LiveInput input = input_of(robot, {});

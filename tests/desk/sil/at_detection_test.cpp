@@ -76,7 +76,8 @@ TEST(AtDetection, GivenSlowThenTheArmGoesOnMoreSlowlyAndTheRunSaysSo) {
   EXPECT_GT(fastest(slowed, settled_s), 0.05 * fastest(reported, settled_s)) << "it goes on";
   // Off the motion that it was given it would be by tenths of a radian.
   EXPECT_LT(slowed.run.tracking_rms_rad, 2 * reported.run.tracking_rms_rad);
-  EXPECT_THAT(text_of(slowed), testing::ContainsRegex("motion slowed +1.* s, to 20 % of its pace within 0.5 s"));
+  EXPECT_THAT(text_of(slowed),
+              testing::ContainsRegex("motion slowed +1.* s, to 20 % of its pace within 0.5 s"));
   EXPECT_THAT(sentence_of(slowed), HasSubstr("slowed the motion to 20 % of its pace within 0.5 s"));
   EXPECT_THAT(sentence_of(slowed), Not(HasSubstr("ended before")));
   const auto json = to_json(slowed);
@@ -87,8 +88,8 @@ TEST(AtDetection, GivenSlowThenTheArmGoesOnMoreSlowlyAndTheRunSaysSo) {
   EXPECT_EQ(to_json(reported).at("slowed"), nullptr);
 }
 
-// GIVEN a run that ends while the motion is still slowed down THEN it does not say that the pace was
-// reached.
+// GIVEN a run that ends while the motion is still slowed down THEN it does not say that the pace
+// was reached.
 TEST(AtDetection, GivenARunThatEndsOnTheWayThenItSaysSo) {
   const RobotDescription robot = by_joint_robot(4, kNoticedNm);
   Scenario scenario = slowing(robot, {friction_on(1, 3 * kNoticedNm)});

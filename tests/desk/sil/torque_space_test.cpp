@@ -285,8 +285,8 @@ TEST(TorqueSpace, ABoundThatCoversVelocitiesIsTakenAsItIs) {
   EXPECT_EQ(run(robot, scenario).run.first_joint, 0);
 }
 
-// GIVEN a new arm, of which no bound is known yet THEN it runs, whatever goes on, without a detection:
-// the recording to calibrate on.
+// GIVEN a new arm, of which no bound is known yet THEN it runs, whatever goes on, without a
+// detection: the recording to calibrate on.
 TEST(TorqueSpace, OfARobotWithoutABoundNothingIsJudged) {
   for (const double fast_alpha : {0.0, 50.0}) {
     RobotDescription robot = by_joint_robot(3, kBoundNm);

@@ -54,8 +54,8 @@ template <typename Scalar>
 // One tick: the position measured at its end, rad or m, after `missed` ticks without one. Over
 // these the position goes on at the velocity that is known, for 1/bandwidth or five ticks at most:
 // after a longer gap nothing is known any more. The first call, and the one after such a gap,
-// starts at rest there and has to settle. kNonFinitePosition for a position that is not a number, kNumericOverflow for
-// one so far away that the velocity would not be; the state is then unchanged.
+// starts at rest there and has to settle. kNonFinitePosition for a position that is not a number,
+// kNumericOverflow for one so far away that the velocity would not be; the state is then unchanged.
 template <typename Scalar>
 [[nodiscard]] Status update(const VelocityObserverConfig<Scalar>& config, Scalar position,
                             VelocityObserverState<Scalar>& state, std::uint32_t missed = 0) {

@@ -53,13 +53,13 @@ struct LoopReport {
   std::uint32_t refused_frames = 0;
   std::uint32_t unsent_frames = 0;
   bool detected = false;
-  double detection_time_s = 0;  // since arming
-  int first_joint = -1;         // that was detected, from 0; -1: none, or not in TorqueSpace
-  bool acts = false;            // beyond the second level too
-  double act_time_s = 0;        // since arming
-  int act_joint = -1;           // that was, from 0; -1: as of first_joint
-  bool slowed = false;          // the motion was
-  double slow_time_s = 0;       // since arming
+  double detection_time_s = 0;       // since arming
+  int first_joint = -1;              // that was detected, from 0; -1: none, or not in TorqueSpace
+  bool acts = false;                 // beyond the second level too
+  double act_time_s = 0;             // since arming
+  int act_joint = -1;                // that was, from 0; -1: as of first_joint
+  bool slowed = false;               // the motion was
+  double slow_time_s = 0;            // since arming
   SlowDownConfig<double> slow_down;  // as it was
   // The newest answer to which fault it is, of a controller WithIsolation; its time_s is 0 where
   // there was none.
