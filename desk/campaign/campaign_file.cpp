@@ -39,7 +39,7 @@ PlantSettings read_plant(const TomlTable& table) {
   plant.friction_error = table.number("friction_error", share_below_one(), 0);
   plant.torque_noise = table.number("torque_noise", share_below_one(), 0);
   plant.encoder_bits = static_cast<int>(table.integer("encoder_bits", 8, 40, 0));
-  // A slower controller would not hold the arm on these motions.
+  // The controller's observer of velocities needs it (core, velocity_observer.hpp).
   constexpr double kLongestPeriodS = 0.0024;
   plant.period_s =
       table.number("period_s", at_most(positive("s"), kLongestPeriodS), plant.period_s);

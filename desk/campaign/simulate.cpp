@@ -36,8 +36,8 @@ constexpr std::uint64_t kFirstOfCalibration = std::uint64_t{1} << 40U;
 class Sensors {
  public:
   Sensors(const Campaign& campaign, const sim::JointState& start)
-      : step_rad_(sim::position_step_rad({.bits_per_turn = campaign.plant.encoder_bits})),
-        config_(best_velocity_observer(campaign.plant.period_s, kAcceleration, 0.5 * step_rad_)),
+      : config_{.bandwidth_rad_s = 200, .period_s = campaign.plant.period_s},
+        step_rad_(sim::position_step_rad({.bits_per_turn = campaign.plant.encoder_bits})),
         q_(start.q) {
     for (Index j = 0; j < start.q.size(); ++j) {
       // Settled: the run starts on the move.
@@ -69,11 +69,8 @@ class Sensors {
   }
 
  private:
-  // As of a program that is told what these motions come to.
-  static constexpr double kAcceleration = 15;  // rad/s^2 or m/s^2
-
-  double step_rad_;
   VelocityObserverConfig<double> config_;
+  double step_rad_;
   JointVector q_;
   std::vector<VelocityObserverState<double>> observers_;
 };

@@ -72,20 +72,16 @@ template <int N, typename Scalar, typename Space>
                       static_cast<Scalar>(settings.slow_down.within_s)};
   config.isolates = robot.estimator.isolation;
   if (!settings.accommodate) config.monitor.max_compensation.fill(Scalar(0));
-  if (settings.max_acceleration) {
+  const bool is_covered = robot.bound && robot.bound->covers_velocities;
+  if (settings.max_acceleration && !is_covered) {
     sim::EncoderConfig encoder;
     encoder.bits_per_turn = settings.encoder_bits_per_turn;
     const double half_count =
         0.5 * (sim::position_step_rad(encoder) + static_cast<double>(hal::kPositionPerCount));
-    const auto max_acceleration = static_cast<Scalar>(*settings.max_acceleration);
-    const auto position_error = static_cast<Scalar>(half_count);
-    config.velocity_observer =
-        best_velocity_observer(config.velocity_observer.period_s, max_acceleration, position_error);
-    if (!robot.bound || !robot.bound->covers_velocities) {
-      detail::add_velocity_error(
-          robot, velocity_error_bound(config.velocity_observer, max_acceleration, position_error),
-          config.monitor.bound);
-    }
+    const Scalar error = velocity_error_bound(config.velocity_observer,
+                                              static_cast<Scalar>(*settings.max_acceleration),
+                                              static_cast<Scalar>(half_count));
+    detail::add_velocity_error(robot, error, config.monitor.bound);
   }
   return config;
 }

@@ -250,7 +250,7 @@ TEST(JointController, TimesFollowFromAnyPeriod) {
   auto config = ArmOnBus::config(false);
   config.velocity_observer.period_s = 1;
   EXPECT_EQ(validate(config), Status::kOk);
-  config.velocity_observer.bandwidth_rad_s = 1001;
+  config.velocity_observer.bandwidth_rad_s = 501;
   EXPECT_EQ(validate(config), Status::kInvalidFilterPole);
 }
 

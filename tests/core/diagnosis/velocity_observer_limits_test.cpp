@@ -32,41 +32,18 @@ TEST(VelocityObserverLimits, ItStartsAtRestWhereTheJointIs) {
   }
 }
 
-TEST(VelocityObserverLimits, AGapOfFiveTicksIsTheLongestThatIsBridged) {
+TEST(VelocityObserverLimits, AGapOfOneOverTheBandwidthIsTheLongestThatIsBridged) {
   State bridged{1000, 0, 3};
-  const double position = 3 * 6 * kQuarter.period_s;
-  ASSERT_EQ(update(kQuarter, position, bridged, 5), Status::kOk);
+  const double position = 3 * 5 * kQuarter.period_s;
+  ASSERT_EQ(update(kQuarter, position, bridged, 4), Status::kOk);
   EXPECT_EQ(bridged.updates, 1001U);
   EXPECT_EQ(bridged.velocity, 3);
   EXPECT_EQ(bridged.position, position);
   State forgotten{1000, 0, 3};
-  ASSERT_EQ(update(kQuarter, 1.5, forgotten, 6), Status::kOk);
+  ASSERT_EQ(update(kQuarter, 1.5, forgotten, 5), Status::kOk);
   EXPECT_EQ(forgotten.updates, 1U);
   EXPECT_EQ(forgotten.velocity, 0);
   EXPECT_EQ(forgotten.position, 1.5);
-}
-
-TEST(VelocityObserverLimits, ASlowOneBridgesOneOverItsBandwidth) {
-  constexpr Config kTenth{.bandwidth_rad_s = 100};
-  State bridged{1000, 0, 3};
-  ASSERT_EQ(update(kTenth, 3 * 0.010, bridged, 9), Status::kOk);
-  EXPECT_EQ(bridged.updates, 1001U);
-  ASSERT_EQ(update(kTenth, 1.5, bridged, 11), Status::kOk);
-  EXPECT_EQ(bridged.updates, 1U);
-}
-
-// What has come about in a gap is shared by all of its ticks: taken for that of one, a fast loop
-// would make a jump of the velocity of it.
-TEST(VelocityObserverLimits, BehindAGapTheVelocityIsThatOfTheWayOverIt) {
-  constexpr double kAcceleration = 10;
-  constexpr Config kFast{.bandwidth_rad_s = 1000};
-  for (const std::uint32_t missed : {1U, 3U, 5U}) {
-    State state{1000, 0, 0};
-    const double elapsed_s = (missed + 1) * kFast.period_s;
-    ASSERT_EQ(update(kFast, kAcceleration * elapsed_s * elapsed_s / 2, state, missed), Status::kOk);
-    EXPECT_GT(state.velocity, 0.3 * kAcceleration * elapsed_s) << missed;
-    EXPECT_LT(state.velocity, kAcceleration * elapsed_s) << missed;
-  }
 }
 
 TEST(VelocityObserverLimits, ItHasSettledAfterNineAndAQuarterTimeConstants) {
@@ -74,10 +51,10 @@ TEST(VelocityObserverLimits, ItHasSettledAfterNineAndAQuarterTimeConstants) {
   EXPECT_TRUE(is_settled(kQuarter, State{38, 0, 0}));
 }
 
-TEST(VelocityObserverLimits, ItsLoopIsFasterThanNothingAndNoFasterThanItsSampling) {
-  EXPECT_EQ(validate(Config{.bandwidth_rad_s = 512.5, .period_s = 1.0 / 512}),
+TEST(VelocityObserverLimits, ItsLoopIsFasterThanNothingAndSlowerThanHalfItsSampling) {
+  EXPECT_EQ(validate(Config{.bandwidth_rad_s = 256, .period_s = 1.0 / 512}),
             Status::kInvalidFilterPole);
-  EXPECT_EQ(validate(Config{.bandwidth_rad_s = 512, .period_s = 1.0 / 512}), Status::kOk);
+  EXPECT_EQ(validate(Config{.bandwidth_rad_s = 255.9, .period_s = 1.0 / 512}), Status::kOk);
   EXPECT_EQ(validate(Config{.bandwidth_rad_s = -1}), Status::kInvalidFilterPole);
   EXPECT_EQ(validate(Config{.bandwidth_rad_s = 1e-9}), Status::kOk);
   for (const double period_s : {-0.001, 0.0, std::numeric_limits<double>::infinity(),

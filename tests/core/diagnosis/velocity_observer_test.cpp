@@ -71,31 +71,9 @@ TEST(VelocityObserver, StaysWithinItsBound) {
   EXPECT_GT(worst, 0.4 * bound);
 }
 
-// GIVEN encoders of any count WHEN the best observer is asked for THEN no other is nearer to the
-// velocity, and a fine encoder's is faster than a coarse one's.
-TEST(VelocityObserver, IsAsFastAsTheEncoderIsFine) {
-  constexpr double kPeriodS = 0.001;
-  constexpr double kMostAcceleration = 15;
-  double faster = 2 / kPeriodS;
-  for (const double half_count : {1e-6, 6e-6, 1e-4, 1e-3, 1e-2}) {
-    const Config best = best_velocity_observer(kPeriodS, kMostAcceleration, half_count);
-    ASSERT_EQ(validate(best), Status::kOk);
-    EXPECT_LE(best.bandwidth_rad_s, faster);
-    faster = best.bandwidth_rad_s;
-    const double least = velocity_error_bound(best, kMostAcceleration, half_count);
-    for (double bandwidth = 25; bandwidth <= 1000; bandwidth *= 1.1) {
-      const double other =
-          velocity_error_bound(Config{bandwidth, kPeriodS}, kMostAcceleration, half_count);
-      EXPECT_LT(least, 1.01 * other) << half_count << ", " << bandwidth;
-    }
-  }
-  const auto float_too = best_velocity_observer(0.001F, 15.0F, 6e-6F);
-  EXPECT_EQ(validate(float_too), Status::kOk) << "a share that rounds to more than the most";
-}
-
 TEST(VelocityObserver, RefusesWhatItCannotFollow) {
   EXPECT_EQ(validate(Config{.bandwidth_rad_s = 0}), Status::kInvalidFilterPole);
-  EXPECT_EQ(validate(Config{.bandwidth_rad_s = 1001}), Status::kInvalidFilterPole);
+  EXPECT_EQ(validate(Config{.bandwidth_rad_s = 500}), Status::kInvalidFilterPole);
   EXPECT_EQ(validate(Config{.bandwidth_rad_s = 200, .period_s = 0}), Status::kInvalidPeriod);
   EXPECT_EQ(validate(Config{}), Status::kOk);
   State state{1, 1, 2};

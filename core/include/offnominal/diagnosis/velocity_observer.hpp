@@ -26,20 +26,14 @@ struct VelocityObserverState {
   Scalar velocity{};          // rad/s or m/s
 };
 
-// Of bandwidth times period: a faster loop would be the difference of two positions, with all their
-// noise.
-template <typename Scalar>
-inline constexpr Scalar kLargestObserverShare = Scalar(1);
-
-// kInvalidPeriod, or kInvalidFilterPole where bandwidth times period is beyond
-// kLargestObserverShare.
+// kInvalidPeriod, or kInvalidFilterPole where the loop would be slower than it samples: bandwidth
+// times period has to stay below 0.5.
 template <typename Scalar>
 [[nodiscard]] Status validate(const VelocityObserverConfig<Scalar>& config) {
   if (!is_finite(config.period_s) || config.period_s <= 0) return Status::kInvalidPeriod;
   const Scalar share = config.bandwidth_rad_s * config.period_s;
-  return is_finite(share) && share > 0 && share <= kLargestObserverShare<Scalar>
-             ? Status::kOk
-             : Status::kInvalidFilterPole;
+  return is_finite(share) && share > 0 && share < Scalar(0.5) ? Status::kOk
+                                                              : Status::kInvalidFilterPole;
 }
 
 // Whether the velocity may be used: of the error that it started with, the speed of a joint that
@@ -52,29 +46,26 @@ template <typename Scalar>
 }
 
 // One tick: the position measured at its end, rad or m, after `missed` ticks without one. Over
-// these the position goes on at the velocity that is known, for 1/bandwidth or five ticks at most:
-// after a longer gap nothing is known any more. The first call, and the one after such a gap,
-// starts at rest there and has to settle. kNonFinitePosition for a position that is not a number,
-// kNumericOverflow for one so far away that the velocity would not be; the state is then unchanged.
+// these the position goes on at the velocity that is known, for 1/bandwidth at most: after a longer
+// gap nothing is known any more. The first call, and the one after such a gap, starts at rest there
+// and has to settle. kNonFinitePosition for a position that is not a number, kNumericOverflow for
+// one so far away that the velocity would not be; the state is then unchanged.
 template <typename Scalar>
 [[nodiscard]] Status update(const VelocityObserverConfig<Scalar>& config, Scalar position,
                             VelocityObserverState<Scalar>& state, std::uint32_t missed = 0) {
   if (!is_finite(position)) return Status::kNonFinitePosition;
   const Scalar share = config.bandwidth_rad_s * config.period_s;
-  constexpr Scalar kShareOfFiveTicks = Scalar(0.2);
-  const Scalar least = share < kShareOfFiveTicks ? share : kShareOfFiveTicks;
-  if (state.updates == 0 || static_cast<Scalar>(missed) * least > Scalar(1)) {
+  if (state.updates == 0 || static_cast<Scalar>(missed) * share > Scalar(1)) {
     state = {1, position, Scalar(0)};
     return Status::kOk;
   }
-  // Poles of the loop, sampled once in so many ticks, at exp(-bandwidth * their time), both.
-  const Scalar ticks = static_cast<Scalar>(missed + 1);
-  const Scalar pole = exponential(-share * ticks);
-  const Scalar elapsed_s = ticks * config.period_s;
-  const Scalar predicted = state.position + elapsed_s * state.velocity;
+  // Poles of the sampled loop at exp(-bandwidth period), both.
+  const Scalar pole = exponential(-share);
+  const Scalar predicted =
+      state.position + static_cast<Scalar>(missed + 1) * config.period_s * state.velocity;
   const Scalar innovation = position - predicted;
   const Scalar velocity =
-      state.velocity + (Scalar(1) - pole) * (Scalar(1) - pole) / elapsed_s * innovation;
+      state.velocity + (Scalar(1) - pole) * (Scalar(1) - pole) / config.period_s * innovation;
   if (!is_finite(velocity)) return Status::kNumericOverflow;
   state.position = predicted + (Scalar(1) - pole * pole) * innovation;
   state.velocity = velocity;
@@ -116,29 +107,6 @@ template <typename Scalar>
   };
   return max_acceleration * response(Scalar(1), Scalar(0)) +
          position_error * response(Scalar(0), Scalar(1));
-}
-
-// The observer of that period whose velocity_error_bound() is least: a slow one lags, a fast one
-// makes velocities of what the position is rounded to. For the start of a program, no tick. With 19
-// bits a turn, 1 kHz and 15 rad/s^2 it is five times as near as one of 200 rad/s.
-template <typename Scalar>
-[[nodiscard]] VelocityObserverConfig<Scalar> best_velocity_observer(Scalar period_s,
-                                                                    Scalar max_acceleration,
-                                                                    Scalar position_error) {
-  constexpr int kTried = 24;
-  constexpr Scalar kSlower = Scalar(0.85);
-  VelocityObserverConfig<Scalar> best{kLargestObserverShare<Scalar> / period_s, period_s};
-  Scalar least = velocity_error_bound(best, max_acceleration, position_error);
-  VelocityObserverConfig<Scalar> trial = best;
-  for (int i = 1; i < kTried; ++i) {
-    trial.bandwidth_rad_s *= kSlower;
-    const Scalar error = velocity_error_bound(trial, max_acceleration, position_error);
-    if (error < least) {
-      least = error;
-      best = trial;
-    }
-  }
-  return best;
 }
 
 }  // namespace offnominal
