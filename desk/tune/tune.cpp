@@ -29,6 +29,9 @@ constexpr std::array kSizes = {8, 16, 24, 35, 48, 64};
 constexpr std::array kTimesBase = {1.0, 2.5, 6.0};
 constexpr std::array kRatesOfRanges = {2.5, 25.0, 250.0};
 constexpr int kSizeOfRates = 35;
+// In the loop, of so many units: a rate of 25 was well, 250 made frictions of a seven-joint arm worse
+// (docs/diagnosis.md).
+constexpr double kFastInTheLoop = 100;
 // A lower rate, or a smaller network, that misses no more than this beyond the best is taken.
 constexpr double kAsWellLearnt = 0.02;
 // The radius that trials have is beyond any that they come to.
@@ -259,6 +262,16 @@ Tuned tune(const RobotDescription& given, const TuneRequest& request, const std:
     tuned.notes.emplace_back(
         "The robot file's bound belonged to its old settings and is taken out: `offnominal "
         "calibrate` finds the new one.");
+  }
+  const EstimatorSettings& settings = tuned.robot.estimator;
+  const double like_35_units = settings.learning_rate * settings.hidden_units / kSizeOfRates;
+  if (like_35_units >= kFastInTheLoop) {
+    tuned.notes.push_back(fmt::format(
+        "The rate {:g} is for what is reported. Where the controller compensates (--accommodate) "
+        "by "
+        "so fast a network an arm may oscillate, and friction of some was made worse: try it in a "
+        "campaign with accommodates = true first, or take a hundredth of it.",
+        settings.learning_rate));
   }
   write_into_text(given, tuned);
   return tuned;
