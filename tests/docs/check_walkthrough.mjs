@@ -1,6 +1,7 @@
 // Runs the commands of a document in a folder of their own, in their order, and compares what they print with
 // what the document shows:
-//   node check_walkthrough.mjs DOCUMENT.md --offnominal COMMAND --project FOLDER
+//   node check_walkthrough.mjs DOCUMENT.md --offnominal COMMAND --project FOLDER [--section HEADING] [--keep FOLDER]
+// --section: what stands under that heading alone. --keep: the commands run in that folder, which stays.
 // Recordings: OFFNOMINAL_DATA, else ../shared/data beside the project.
 // Exit 0: it says what the program says. Exit 1: one line per difference on stderr. Exit 77: the recordings of
 // the document are not there.
@@ -27,7 +28,7 @@ function readArguments() {
   const text = { type: "string" };
   const { values, positionals } = parseArgs({
     allowPositionals: true,
-    options: { offnominal: text, project: text },
+    options: { offnominal: text, project: text, section: text, keep: text },
   });
   if (positionals.length !== 1 || !values.offnominal || !values.project)
     throw new Error("DOCUMENT.md, --offnominal and --project are needed");
@@ -62,6 +63,21 @@ function blocksOf(markdown) {
     else if (line.startsWith("<!--")) throw new Error(`line ${index + 1}: found ${line}; allowed: file, lines`);
   });
   return blocks;
+}
+
+/** The document with every line blank that does not stand under `heading`: lines keep their numbers. */
+function sectionOf(markdown, heading) {
+  let level = 0;
+  let fenced = false;
+  const lines = markdown.split("\n").map((line) => {
+    if (line.startsWith("```")) fenced = !fenced;
+    const [, marks, title] = (fenced ? null : line.match(/^(#+) (.*)$/)) ?? [];
+    if (title === heading) level = marks.length;
+    else if (level > 0 && marks && marks.length <= level) level = -1;
+    return level > 0 ? line : "";
+  });
+  if (level === 0) throw new Error(`--section: found no heading "${heading}"`);
+  return lines.join("\n");
 }
 
 /** Commands with what the document shows of each, files before them. */
@@ -142,12 +158,12 @@ function firstDifference(shown, said, gaps) {
   return null;
 }
 
-/** A project as the document sees it: `dev`, `robots`, an empty `build`, recordings beside it. */
+/** A project as the document sees it: `dev`, `robots`, `bench`, an empty `build`, recordings beside it. */
 async function makeProject(folder, options) {
   const project = join(folder, "offnominal");
   await mkdir(join(project, "build"), { recursive: true });
   await mkdir(join(folder, "shared"));
-  await symlink(resolve(options.project, "robots"), join(project, "robots"));
+  for (const name of ["robots", "bench"]) await symlink(resolve(options.project, name), join(project, name));
   await symlink(resolve(options.data), join(folder, "shared", "data"));
   const dev = join(project, "dev");
   await writeFile(dev, `#!/bin/sh\nshift\nexec '${resolve(options.offnominal)}' "$@"\n`);
@@ -162,7 +178,8 @@ async function check(document, options, folder) {
     ++faults;
     process.stderr.write(`${document}: line ${line}: ${words}\n`);
   };
-  const steps = stepsOf(blocksOf(await readFile(document, "utf8")));
+  const text = await readFile(document, "utf8");
+  const steps = stepsOf(blocksOf(options.section ? sectionOf(text, options.section) : text));
   for (const { command, files, shown } of steps) {
     for (const file of files) {
       const path = join(project, file.file);
@@ -190,9 +207,10 @@ if (!existsSync(options.data)) {
   process.stdout.write(`no recordings at ${options.data}: skipped; OFFNOMINAL_DATA names their folder\n`);
   process.exit(kSkipped);
 }
-const folder = await mkdtemp(join(tmpdir(), "offnominal-walkthrough-"));
+if (options.keep) await mkdir(options.keep, { recursive: true });
+const folder = options.keep ? resolve(options.keep) : await mkdtemp(join(tmpdir(), "offnominal-walkthrough-"));
 try {
   process.exitCode = (await check(options.document, options, folder)) ? 0 : 1;
 } finally {
-  await rm(folder, { recursive: true, force: true });
+  if (!options.keep) await rm(folder, { recursive: true, force: true });
 }
