@@ -80,12 +80,6 @@ function sectionOf(markdown, heading) {
   return lines.join("\n");
 }
 
-/** What is to be checked of the document. */
-async function textOf({ document, section }) {
-  const text = await readFile(document, "utf8");
-  return section ? sectionOf(text, section) : text;
-}
-
 /** Commands with what the document shows of each, files before them. */
 function stepsOf(blocks) {
   const steps = [];
@@ -177,15 +171,15 @@ async function makeProject(folder, options) {
   return project;
 }
 
-async function check(options, folder) {
-  const { document } = options;
+async function check(document, options, folder) {
   const project = await makeProject(folder, options);
   let faults = 0;
   const fault = (line, words) => {
     ++faults;
     process.stderr.write(`${document}: line ${line}: ${words}\n`);
   };
-  const steps = stepsOf(blocksOf(await textOf(options)));
+  const text = await readFile(document, "utf8");
+  const steps = stepsOf(blocksOf(options.section ? sectionOf(text, options.section) : text));
   for (const { command, files, shown } of steps) {
     for (const file of files) {
       const path = join(project, file.file);
@@ -209,14 +203,14 @@ async function check(options, folder) {
 }
 
 const options = readArguments();
-if ((await textOf(options)).includes("shared/data") && !existsSync(options.data)) {
+if (!existsSync(options.data)) {
   process.stdout.write(`no recordings at ${options.data}: skipped; OFFNOMINAL_DATA names their folder\n`);
   process.exit(kSkipped);
 }
 if (options.keep) await mkdir(options.keep, { recursive: true });
 const folder = options.keep ? resolve(options.keep) : await mkdtemp(join(tmpdir(), "offnominal-walkthrough-"));
 try {
-  process.exitCode = (await check(options, folder)) ? 0 : 1;
+  process.exitCode = (await check(options.document, options, folder)) ? 0 : 1;
 } finally {
   if (!options.keep) await rm(folder, { recursive: true, force: true });
 }
