@@ -132,7 +132,14 @@ void record(const RecordOptions& options) {
     write_robot_file(plan.model, options.model, options.answer.existing());
     written.push_back(options.model);
   }
-  for (const std::string& file : written) std::cout << "written: " << file << '\n';
+  const auto json = [&] {
+    return nlohmann::ordered_json{{"written", written},
+                                  {options.run ? "run" : "calibration", number},
+                                  {"samples", log.sample_count()},
+                                  {"period_s", log.period_s}};
+  };
+  print_answer(
+      options.answer, json, [] { return std::string(); }, written);
 }
 
 void set_up_record(CLI::App& verb) {
@@ -149,6 +156,7 @@ void set_up_record(CLI::App& verb) {
                  "Robot file to write too: the model that the detectors have, without a bound")
       ->type_name(kNewRobotFile);
   add_force_option(sub, options->answer);
+  add_json_option(sub, options->answer);
   sub.callback([&sub, options] {
     check_outputs(sub, report::is_page);
     record(*options);

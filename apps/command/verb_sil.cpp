@@ -162,7 +162,13 @@ ExitCode run(const SilOptions& options, const std::string& command_line) {
     if (*output) written.push_back(**output);
   }
   print_answer(
-      options.answer, [&] { return to_json(result); }, [&] { return text_of(result); }, written);
+      options.answer,
+      [&] {
+        nlohmann::ordered_json json = to_json(result);
+        json["judged"] = is_judged;
+        return json;
+      },
+      [&] { return text_of(result); }, written);
   return sil::is_unasked_stop(result) ? ExitCode::kCheckFailed : ExitCode::kDone;
 }
 
