@@ -116,7 +116,7 @@ void read_per_joint(const TomlTable& table, std::size_t count, BoundSettings& bo
 // Refuses the keys that belong to another kind of bound.
 void refuse_keys_other_than(const TomlTable& table, const std::vector<std::string>& own,
                             const std::string& kind) {
-  std::vector<std::string> allowed{"kind", "covers_velocities", "source"};
+  std::vector<std::string> allowed{"kind", "source", "covers_velocities"};
   if (kind != "per_joint") allowed.emplace_back("velocity_error");
   allowed.insert(allowed.end(), own.begin(), own.end());
   for (const std::string& key : bound_keys()) {

@@ -256,7 +256,7 @@ TEST(JointProgram, SaysAndRecordsWhenItActsAndThatItSlows) {
     }
     EXPECT_GT(report.act_time_s, report.detection_time_s);
     EXPECT_EQ(report.slow_time_s, report.act_time_s);
-    EXPECT_EQ(report.slowed_to, 0.5);
+    EXPECT_EQ(report.slow_down.to, 0.5);
     // Of the last row: rows in between may be lost where nobody waits for the disk.
     const double behind_s = columns.at("behind").maxCoeff();
     const double run_s = columns.at("motion_t").maxCoeff() + behind_s;
