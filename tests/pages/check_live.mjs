@@ -16,6 +16,11 @@ const kLooks = [
   [2560, "dark"],
 ];
 
+const kFrozenLooks = [
+  [400, "light"],
+  [400, "dark"],
+];
+
 /** The robot judged joint by joint, under hostile names. */
 async function hostileRobot(file, folder) {
   const robot = join(folder, "arm.toml");
@@ -74,6 +79,25 @@ async function checkAlarm(page, fault) {
   if ((await page.$$("#place-frozen figure")).length !== 2) fault("what was around the alarm is not there for every joint");
   const answer = await page.textContent("#place-detection .note");
   if (!answer.includes("confidence") && !answer.includes("Unknown")) fault(`isolation says nothing: ${answer}`);
+}
+
+/** Of the first chart around the detection: its width, that of its place, and the colour of its numbers. */
+function frozenLook(page) {
+  return page.evaluate(() => {
+    const { chart, host } = studio.live.frozen[0];
+    return { width: chart.getWidth(), room: host.clientWidth, ink: chart.getOption().xAxis[0].axisLabel.color };
+  });
+}
+
+/** What is around the alarm follows window and colours before any session is there to bring charts of its own. */
+async function checkFrozen(page, options, fault) {
+  const { ink: light } = await frozenLook(page);
+  await look(page, kFrozenLooks, "live_frozen", options, fault);
+  const { width, room, ink } = await frozenLook(page);
+  if (width !== room) fault(`the chart around the alarm is ${width} pixels wide in a place of ${room}`);
+  if (ink === light) fault(`in dark colours the numbers of the chart around the alarm stay ${ink}`);
+  await page.setViewportSize({ width: 1280, height: 900 });
+  await page.emulateMedia({ colorScheme: "light" });
 }
 
 async function checkExplanation(page, folder, fault) {
@@ -139,6 +163,7 @@ async function check({ options, folder, start, newContext, axeSource }, fault) {
   if (options.measure) return await measure(page, program, Number(options.measure));
   await checkMoving(page, fault);
   await checkAlarm(page, fault);
+  await checkFrozen(page, { ...options, axeSource }, fault);
   await checkExplanation(page, folder, fault);
   await look(page, kLooks, "live", { ...options, axeSource }, fault);
   await checkRest(page, folder, fault);

@@ -1,4 +1,4 @@
-import { drawFigure, shareExtents } from "../report/drawing";
+import { followWindow, redraw, shareExtents } from "../report/drawing";
 import { element, within, type Attributes } from "../report/element";
 import { figureWith } from "../report/figure";
 import { formatNumber } from "../report/format";
@@ -93,5 +93,7 @@ async function showFrozen() {
     charts.forEach((block, at) => refill(itemAt(live.frozen, at), block));
   }
   shareExtents();
-  live.frozen.forEach(drawFigure);
+  // While it was hidden the window may have become another.
+  live.frozen.forEach(redraw);
+  followWindow();
 }
