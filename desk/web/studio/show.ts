@@ -8,6 +8,7 @@ import { headerContent, headlineContent, jointChoice, recordingPicker } from "./
 import { learnContent, updateProgress } from "./learn";
 import { addToNote, baseName, button, holdControls, noteWith, replaceContent } from "./parts";
 import { placeOf } from "./places";
+import { remarkNotes } from "./remarks";
 import { hasResults } from "./results";
 import { showSave } from "./saving";
 import { currentJoint, session, state } from "./session";
@@ -17,10 +18,10 @@ import { updateTour } from "./tour";
 /** All but the charts. */
 export function show() {
   const joint = currentJoint();
-  const { robot, hints, joints, steps } = state();
+  const { robot, recordings, hints, joints, steps } = state();
   if (!hasResults()) document.title = `Studio: ${robot.name}`;
   const host = placeOf(hasResults() ? "run" : "head");
-  replaceContent(host, headerContent(), ...hints.map((hint) => noteWith("warn", hint)));
+  replaceContent(host, headerContent(), ...hints.map((hint) => noteWith("warn", hint)), ...remarkNotes(recordings));
   replaceContent(placeOf("joints"), jointChoice());
   replaceContent(placeOf("headline"), headlineContent());
   byId("effects-heading").textContent = `Effects of joint ${joint.joint}`;

@@ -4,6 +4,7 @@ import type { Joint } from "../studio/api";
 import { steppedBy } from "../studio/drag";
 import { isRobotFile, sizeWords } from "../studio/files";
 import { appendSteps, emptyCurves, liveScale } from "../studio/live_curves";
+import { remarkWords } from "../studio/remarks";
 import { errorOf, nextConfirm, worstJoint } from "../studio/session";
 import { columnOptions, editOf, signalWords } from "../studio/signals";
 import { laterWords, valueWords } from "../studio/parts";
@@ -44,6 +45,14 @@ test("AFittedNumberIsToldWithItsIntervalOrWhyItHasNone", () => {
   assert.equal(valueWords({ value: 20.8, unit: "N", ci95: [19.6, 22] }), "20.8 N, 95 % between 19.6 and 22");
   const without = { value: 0.5, unit: "1", ci95: null, why_no_ci95: "two of three blocks" };
   assert.equal(valueWords(without), "0.5, no interval: two of three blocks");
+});
+
+test("WhatTheReaderNotedIsToldOfEveryRecording", () => {
+  const told = remarkWords([
+    { name: "runs/a.csv", remarks: ["200 rows were left out", "column time is the time t"] },
+    { name: "b.csv", remarks: [] },
+  ]);
+  assert.deepEqual(told, ["a.csv: 200 rows were left out; column time is the time t"]);
 });
 
 test("RobotFilesAreKnownByTheirEnding", () => {
