@@ -74,6 +74,11 @@ async function checkAlarm(page, fault) {
   const alarm = await page.textContent("#place-detection .note");
   if (!alarm.includes("Off nominal") || !alarm.includes("joint 2")) fault(`the alarm says: ${alarm}`);
   if (!(await page.textContent("#place-injected")).includes("Disturbance torque, joint 2")) fault("the fault is not listed");
+  await page.fill("#fault-size", "");
+  await page.click("#fault-inject");
+  const refused = await page.textContent("#place-liveMessage");
+  if (!refused.includes("no number")) fault(`an empty size is answered with: ${refused}`);
+  if (!(await page.textContent("#place-injected")).includes("8 N m")) fault("an empty size replaces a fault that is there");
   await page.waitForSelector("#live-explain:not([aria-disabled])");
   await page.waitForSelector("#place-frozen figure canvas");
   if ((await page.$$("#place-frozen figure")).length !== 2) fault("what was around the alarm is not there for every joint");

@@ -4,6 +4,7 @@ import type { Joint } from "../studio/api";
 import { steppedBy } from "../studio/drag";
 import { isRobotFile, sizeWords } from "../studio/files";
 import { appendSteps, emptyCurves, liveScale } from "../studio/live_curves";
+import { sizeFrom } from "../studio/live_size";
 import { remarkWords } from "../studio/remarks";
 import { errorOf, nextConfirm, worstJoint } from "../studio/session";
 import { columnOptions, editOf, signalWords } from "../studio/signals";
@@ -53,6 +54,13 @@ test("WhatTheReaderNotedIsToldOfEveryRecording", () => {
     { name: "b.csv", remarks: [] },
   ]);
   assert.deepEqual(told, ["a.csv: 200 rows were left out; column time is the time t"]);
+});
+
+test("AnEmptyOrUnreadableSizeOfAFaultIsNone", () => {
+  const range = { least: -1000, most: 1000, unit: "N m" };
+  assert.equal(sizeFrom("-2.5", range), -2.5);
+  for (const text of ["", " ", "x", "1e999"]) assert.match(String(sizeFrom(text, range)), /no number: it has to be -1000 to 1000 N m/);
+  assert.match(String(sizeFrom("0", range)), /0 is no fault/);
 });
 
 test("RobotFilesAreKnownByTheirEnding", () => {

@@ -103,6 +103,9 @@ TEST_F(LiveServer, TakesChangesOnlyFromItsOwnPage) {
   for (const json& body :
        {json{{"kind", "no_such"}}, json::array(), json{{"kind", "friction_jump"}, {"joint", 9}},
         json{{"kind", "friction_jump"}, {"joint", 1}, {"size", -1}},
+        json{{"kind", "friction_jump"}, {"joint", 1}, {"size", 0}},
+        json{{"kind", "friction_jump"}, {"joint", 1}, {"size", nullptr}},
+        json{{"kind", "friction_jump"}, {"joint", 1}}, json{{"kind", "frame_loss"}},
         json{{"kind", "friction_jump"}, {"joint", "1"}, {"size", 1}}}) {
     EXPECT_EQ(post("live/faults", body).first, 400) << body;
   }
