@@ -196,6 +196,8 @@ async function checkDrag(page, fault) {
   await page.waitForSelector(".step .evidence figure");
   await fold("drag-");
   const atFit = await headline(page);
+  const joint = () => page.textContent("input[name=joint]:checked + label");
+  const before = await joint();
   await page.focus("input[id^=drag-]");
   for (let i = 0; i < 30; ++i) await page.keyboard.press("ArrowRight");
   // The first answer may be that of one small step, which no digit of the error shows.
@@ -208,10 +210,15 @@ async function checkDrag(page, fault) {
   if (!(off[1] > atFit[1])) fault(`dragged off its fit, the error went from ${atFit} to ${off}`);
   const words = await page.$eval("#place-headline", (root) => root.textContent);
   if (!words.includes("dragged")) fault(`while a number is dragged, the page says: ${words}`);
+  // At this width the list of joints stays in sight, the headline does not.
+  const beside = await joint();
+  if (!beside.includes("dragged")) fault(`while a number is dragged, the list of joints says: ${beside}`);
   await page.keyboard.press("Escape");
   await page.waitForFunction(() => !document.querySelector("#place-headline").textContent.includes("dragged"));
   const back = await headline(page);
   if (back[1] !== atFit[1]) fault(`let go, the error is ${back} and was ${atFit}`);
+  const after = await joint();
+  if (after !== before) fault(`let go, the list of joints says ${after}, and said ${before}`);
 }
 
 /** What was added is there for the next program over the same files; a page for others beside it. */

@@ -6,7 +6,7 @@ import { isRobotFile, sizeWords } from "../studio/files";
 import { appendSteps, emptyCurves, liveScale } from "../studio/live_curves";
 import { sizeFrom } from "../studio/live_size";
 import { remarkWords } from "../studio/remarks";
-import { errorOf, nextConfirm, worstJoint } from "../studio/session";
+import { errorOf, nextConfirm, rowNumbers, worstJoint } from "../studio/session";
 import { columnOptions, editOf, signalWords } from "../studio/signals";
 import { laterWords, valueWords } from "../studio/parts";
 import { step } from "./samples";
@@ -61,6 +61,14 @@ test("AnEmptyOrUnreadableSizeOfAFaultIsNone", () => {
   assert.equal(sizeFrom("-2.5", range), -2.5);
   for (const text of ["", " ", "x", "1e999"]) assert.match(String(sizeFrom(text, range)), /no number: it has to be -1000 to 1000 N m/);
   assert.match(String(sizeFrom("0", range)), /0 is no fault/);
+});
+
+test("TheListOfJointsFollowsANumberThatIsDragged", () => {
+  const now = { start: { fitted_percent: 50, held_out_percent: 60 }, now: { fitted_percent: 5, held_out_percent: 6 } };
+  assert.deepEqual(rowNumbers(now, null), { start: 60, now: 6, words: "" });
+  assert.deepEqual(rowNumbers(now, { fitted_percent: 7, held_out_percent: 8 }), { start: 60, now: 8, words: " dragged" });
+  const fitted = { fitted_percent: 7, held_out_percent: null };
+  assert.deepEqual(rowNumbers(now, fitted), { start: 50, now: 7, words: " dragged, fitted data" });
 });
 
 test("RobotFilesAreKnownByTheirEnding", () => {
