@@ -39,9 +39,10 @@ sim::FaultEvent checked(const std::string& kind, int joint, double size, int joi
     }
     // It would take the place of one that is there, and stand in the list as a fault.
     if (size == 0) {
-      refuse(Refused::Why::kBadRequest,
-             fmt::format("A size of 0 is no fault: that of {} has to be {:g} to {:g} {}, and not 0.",
-                         info->name, info->least, info->most, info->unit));
+      refuse(
+          Refused::Why::kBadRequest,
+          fmt::format("A size of 0 is no fault: that of {} has to be {:g} to {:g} {}, and not 0.",
+                      info->name, info->least, info->most, info->unit));
     }
     fault.size = size;
   }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -222,6 +223,13 @@ std::string in_words(std::string name) {
   return name;
 }
 
+std::string effect_title(const char* name) {
+  std::string words = in_words(name);
+  if (!words.empty())
+    words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
+  return words;
+}
+
 Series points_of(const std::string& name, Tone tone, const VectorXd& x, const VectorXd& y) {
   Series series;
   series.name = name;
@@ -255,10 +263,11 @@ nlohmann::json waterfall_of(const Workbench& bench, std::size_t joint) {
   fall.format = ".2f";
   const std::size_t count = bench.steps().size();
   for (std::size_t steps = 0; steps <= count; ++steps) {
-    const std::string label = steps == 0 ? "as read"
-                                         : fmt::format("{}. {}, joint {}", steps,
-                                                       info_of(bench.steps()[steps - 1].kind)->name,
-                                                       bench.steps()[steps - 1].joint + 1);
+    const std::string label =
+        steps == 0 ? "as read"
+                   : fmt::format("{}. {}, joint {}", steps,
+                                 effect_title(info_of(bench.steps()[steps - 1].kind)->name),
+                                 bench.steps()[steps - 1].joint + 1);
     fall.steps.push_back({label, bench.held_out_percent(joint, steps)});
   }
   return block_of(std::move(fall));

@@ -61,6 +61,9 @@ struct Shown {
 /// "coulomb friction" of "coulomb_friction".
 [[nodiscard]] std::string in_words(std::string name);
 
+/// "Coulomb friction" of it: as the page calls an effect.
+[[nodiscard]] std::string effect_title(const char* name);
+
 /// A cloud of points.
 [[nodiscard]] report::Series points_of(const std::string& name, report::Tone tone,
                                        const Eigen::VectorXd& x, const Eigen::VectorXd& y);

@@ -10,6 +10,12 @@ export function effectTitle(name: string) {
   return words.charAt(0).toUpperCase() + words.slice(1);
 }
 
+/** Words of the server in which these effects are called as the page calls them: "coulomb friction". */
+export function withPlainNames(words: string, effects: string[]) {
+  const name = new RegExp(`\\b(${effects.join("|")})\\b`, "g");
+  return effects.length === 0 ? words : words.replace(name, (each) => each.replaceAll("_", " "));
+}
+
 export function percent(value: Value) {
   return value === null ? "–" : `${formatNumber(value, ".2f")}\u202f%`;
 }

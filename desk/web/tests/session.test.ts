@@ -8,7 +8,7 @@ import { sizeFrom } from "../studio/live_size";
 import { remarkWords } from "../studio/remarks";
 import { errorOf, nextConfirm, rowNumbers, worstJoint } from "../studio/session";
 import { columnOptions, editOf, signalWords } from "../studio/signals";
-import { laterWords, valueWords } from "../studio/parts";
+import { laterWords, valueWords, withPlainNames } from "../studio/parts";
 import { step } from "./samples";
 
 function joint(number: number, now: number | null, moves = true): Joint {
@@ -69,6 +69,12 @@ test("TheListOfJointsFollowsANumberThatIsDragged", () => {
   assert.deepEqual(rowNumbers(now, { fitted_percent: 7, held_out_percent: 8 }), { start: 60, now: 8, words: " dragged" });
   const fitted = { fitted_percent: 7, held_out_percent: null };
   assert.deepEqual(rowNumbers(now, fitted), { start: 50, now: 7, words: " dragged, fitted data" });
+});
+
+test("AnEffectIsCalledByItsPlainNameInTheWordsOfTheSearch", () => {
+  const effects = ["coulomb_friction", "backlash"];
+  assert.equal(withPlainNames("joint 1: coulomb_friction is missing, coulomb_frictions not", effects), "joint 1: coulomb friction is missing, coulomb_frictions not");
+  assert.equal(withPlainNames("a_b", []), "a_b");
 });
 
 test("RobotFilesAreKnownByTheirEnding", () => {

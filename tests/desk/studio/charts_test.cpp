@@ -95,7 +95,7 @@ TEST_F(StudioCharts, FallWithEveryStep) {
   ASSERT_EQ(steps.size(), 3U);
   EXPECT_GT(steps.at(0).at("value").get<double>(), steps.at(1).at("value").get<double>());
   EXPECT_GT(steps.at(1).at("value").get<double>(), 3 * steps.at(2).at("value").get<double>());
-  EXPECT_EQ(steps.at(2).at("label"), "2. coulomb_friction, joint 2");
+  EXPECT_EQ(steps.at(2).at("label"), "2. Coulomb friction, joint 2");
 }
 
 TEST_F(StudioCharts, RefuseWhatIsNotThere) {
