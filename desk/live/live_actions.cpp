@@ -206,6 +206,7 @@ Live::Written Live::write_detection() const {
   History::Rows rows;
   double detected_s = 0;
   double period_s = 0;
+  Written written;
   {
     const std::lock_guard guard(lock_);
     if (!detection_ || !detection_->frozen) {
@@ -215,11 +216,16 @@ Live::Written Live::write_detection() const {
     rows = detection_->stretch ? *detection_->stretch : stretch_of(*detection_);
     detected_s = detection_->t_s;
     period_s = period_s_;
+    written.detection = detection_->number;
   }
-  Written written;
   written.since = write(rows.since(detected_s).log("live", period_s), "detection");
   written.before = write(rows.before(detected_s).log("live", period_s), "before_detection");
   return written;
+}
+
+std::uint64_t Live::detection_number() const {
+  const std::lock_guard guard(lock_);
+  return detection_ ? detection_->number : 0;
 }
 
 // "arm_detection.csv", or "arm_detection_2.csv" where that is there, and so on.

@@ -120,6 +120,20 @@ async function checkExplanation(page, folder, fault) {
   if ((await pictures(page)) <= before) fault("beside the analysis the live view stands still");
 }
 
+/** A second page over the same run shows the analysis that the first has asked for, and its own click begins no other. */
+async function checkOtherPage(other, page, fault) {
+  const shown = other.waitForFunction(() => document.querySelector("#place-learn .answer-words") !== null, undefined, { timeout: 30_000 });
+  await shown.catch(() => fault("a second page does not show the analysis that the first has asked for"));
+  if (!(await other.isVisible("#effects"))) fault("on a second page the analysis is not there");
+  const session = () => page.evaluate(() => studio.live.now.session);
+  const before = await session();
+  await other.click("#live-explain");
+  await other.waitForFunction(() => studio.live.saved.startsWith("Written: "));
+  await other.waitForTimeout(300);
+  if ((await session()) !== before) fault("a second page's click begins another session over the same detection");
+  await other.close();
+}
+
 async function checkRest(page, folder, fault) {
   await page.click("#live-record");
   await page.waitForFunction(() => studio.live.now.recording_s > 0.5);
@@ -169,7 +183,9 @@ async function check({ options, folder, start, newContext, axeSource }, fault) {
   await checkMoving(page, fault);
   await checkAlarm(page, fault);
   await checkFrozen(page, { ...options, axeSource }, fault);
+  const other = await openPage(await newContext(), address, "body[data-live]", expected, fault);
   await checkExplanation(page, folder, fault);
+  await checkOtherPage(other, page, fault);
   await look(page, kLooks, "live", { ...options, axeSource }, fault);
   await checkRest(page, folder, fault);
   await checkNames(page, fault);
