@@ -64,7 +64,7 @@ function keptContent(): HTMLElement[] {
     addToNote(note, button("begin-anew", "Begin anew", actions.undoAll));
     content.push(note);
   }
-  if (why !== "") content.push(noteWith("warn", `Not all of the session before could be taken up: ${why}`));
+  if (why !== "") content.push(noteWith("warn", `Not all of the session before could be taken up: ${why}.`));
   if (problem !== "") content.push(noteWith("warn", `What is done here is not kept: ${problem}`));
   return content;
 }
