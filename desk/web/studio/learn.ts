@@ -146,7 +146,7 @@ export function updateProgress(found: Explanation) {
 /** The search for what is missing: its button, its progress or its answer. */
 export function learnContent(found: Explanation, state: State, actions: Actions) {
   if (found.state === "running") return progressContent(found, actions);
-  const again = state.steps.length > 0 || found.state === "done";
+  const again = state.steps.length > 0;
   const content: HTMLElement[] = [
     button("search", again ? "Search what is left" : "Search for missing effects", actions.search, {
       class: "action main",

@@ -27,7 +27,7 @@ export function show() {
   byId("effects-heading").textContent = `Effects of joint ${joint.joint}`;
   replaceContent(placeOf("effects"), ...effectList(joint, actions));
   replaceContent(placeOf("recording"), recordingPicker());
-  showExploreChoices(joints, () => explore(zoomRange()));
+  showExploreChoices(joints, joint.unit === "N", () => explore(zoomRange()));
   replaceContent(placeOf("steps"), ...keptContent(), stepList(state(), actions));
   placeOf("fall").hidden = steps.length === 0;
   showFound();

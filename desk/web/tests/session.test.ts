@@ -44,6 +44,7 @@ test("AnArrowDragsByAHundredthAndNoFurtherThanItGoes", () => {
 
 test("AFittedNumberIsToldWithItsIntervalOrWhyItHasNone", () => {
   assert.equal(valueWords({ value: 20.8, unit: "N", ci95: [19.6, 22] }), "20.8 N, 95 % between 19.6 and 22");
+  assert.equal(valueWords({ value: 5, unit: "N", ci95: [4.99998, 5.00002] }), "5 N, 95 % between 4.99998 and 5.00002");
   const without = { value: 0.5, unit: "1", ci95: null, why_no_ci95: "two of three blocks" };
   assert.equal(valueWords(without), "0.5, no interval: two of three blocks");
 });
