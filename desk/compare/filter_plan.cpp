@@ -86,7 +86,7 @@ void check_length(const Log& log, const FilterPlan& plan) {
        fmt::format("{:.4g} s at {:g} Hz", log.period_s * samples, plan.sample_rate_hz),
        fmt::format("a recording of {:.4g} s or more, with this filter", asked * log.period_s),
        by_cutoff ? "record for longer, or choose a larger --cutoff"
-                 : "record for longer, or choose a smaller --decimate"});
+                 : "record for longer; on the command line a smaller --decimate may do"});
 }
 
 // Every so many-th sample of a rate leaves at least those that are to be kept.

@@ -3,6 +3,7 @@
 #include <exception>
 #include <thread>
 
+#include "live/controller_words.hpp"
 #include "live/feed.hpp"
 #include "loop/controller_settings.hpp"
 #include "sil/both_ends.hpp"
@@ -135,8 +136,9 @@ class BenchOfRobot final : public Bench {
     if (!run_->ends.is_safe()) return;
     if (!safe_since_us_) safe_since_us_ = now_us();
     if (now_us() < *safe_since_us_ + kAfterwardsUs) return;
-    ended_ = std::string("The controller went to its safe state: ") +
-             controller::name_of(run_->ends.controller().fault()) + ".";
+    const controller::Fault fault = run_->ends.controller().fault();
+    ended_ = std::string("The controller went to its safe state: ") + controller::name_of(fault) +
+             ", " + words_of(fault) + ".";
   }
 
   RobotDescription robot_;

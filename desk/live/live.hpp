@@ -119,11 +119,14 @@ class Live {
   std::string stop_recording();
 
   struct Written {
-    std::string since;   // the detection: what there is to explain
-    std::string before;  // it, when nothing was wrong yet
+    std::string since;            // the detection: what there is to explain
+    std::string before;           // it, when nothing was wrong yet
+    std::uint64_t detection = 0;  // its number
   };
   /// The same of what is around the last detection, in two files.
   [[nodiscard]] Written write_detection() const;
+  /// Of the last detection, from 1; 0: there is none.
+  [[nodiscard]] std::uint64_t detection_number() const;
 
  private:
   void set_up();

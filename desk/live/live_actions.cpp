@@ -37,6 +37,13 @@ sim::FaultEvent checked(const std::string& kind, int joint, double size, int joi
              fmt::format("The size of {} has to be {:g} to {:g} {}.", info->name, info->least,
                          info->most, info->unit));
     }
+    // It would take the place of one that is there, and stand in the list as a fault.
+    if (size == 0) {
+      refuse(
+          Refused::Why::kBadRequest,
+          fmt::format("A size of 0 is no fault: that of {} has to be {:g} to {:g} {}, and not 0.",
+                      info->name, info->least, info->most, info->unit));
+    }
     fault.size = size;
   }
   return fault;
@@ -199,6 +206,7 @@ Live::Written Live::write_detection() const {
   History::Rows rows;
   double detected_s = 0;
   double period_s = 0;
+  Written written;
   {
     const std::lock_guard guard(lock_);
     if (!detection_ || !detection_->frozen) {
@@ -208,11 +216,16 @@ Live::Written Live::write_detection() const {
     rows = detection_->stretch ? *detection_->stretch : stretch_of(*detection_);
     detected_s = detection_->t_s;
     period_s = period_s_;
+    written.detection = detection_->number;
   }
-  Written written;
   written.since = write(rows.since(detected_s).log("live", period_s), "detection");
   written.before = write(rows.before(detected_s).log("live", period_s), "before_detection");
   return written;
+}
+
+std::uint64_t Live::detection_number() const {
+  const std::lock_guard guard(lock_);
+  return detection_ ? detection_->number : 0;
 }
 
 // "arm_detection.csv", or "arm_detection_2.csv" where that is there, and so on.

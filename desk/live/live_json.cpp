@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "live/controller_words.hpp"
 #include "report/page.hpp"
 #include "sil/sil_report.hpp"
 
@@ -106,9 +107,13 @@ ordered_json faults_of(const Live& live) {
 }
 
 ordered_json controller_json(const ControllerWord& word) {
-  ordered_json json{{"state", sil::name_of(word.state)}, {"fault", nullptr}, {"slows", word.slows}};
+  ordered_json json{{"state", sil::name_of(word.state)},
+                    {"fault", nullptr},
+                    {"fault_words", ""},
+                    {"slows", word.slows}};
   if (word.state == hal::ControllerState::kFault) {
     json["fault"] = controller::name_of(word.fault);
+    json["fault_words"] = words_of(word.fault);
   }
   return json;
 }

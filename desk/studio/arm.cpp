@@ -11,6 +11,7 @@
 #include "common/refused.hpp"
 #include "robot/chain_of.hpp"
 #include "robot/monitor_config_of.hpp"
+#include "studio/charts.hpp"
 #include "studio/link_frames.hpp"
 
 namespace offnominal::desk::studio {
@@ -52,9 +53,7 @@ void check(const Workbench& bench, const ArmView& view) {
   const Treated& all = *bench.input().recordings;
   const auto refuse = [](const char* words) { throw Refused(Refused::Why::kBadRequest, words); };
   if (view.recording >= all.logs.size() + all.holdout.size()) refuse("No such recording.");
-  if (view.from_s && view.to_s && *view.from_s >= *view.to_s) {
-    refuse("from has to lie before to.");
-  }
+  check_shown(view.from_s, view.to_s);
 }
 
 // Samples `first` to `end`, that one left out.

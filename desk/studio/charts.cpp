@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -160,9 +161,10 @@ Chart cloud_chart(const Workbench& bench, const Compared& now, const View& view,
     const Cloud others = cloud_of(now.held_out->recordings, view.joint, over);
     chart.series.push_back(points_of(kHeldOut.name, tone(kHeldOut), others.at, others.error));
   }
-  if (is_part) {
-    const Comparison& seen = recording_of(now, view.recording);
-    const Cloud part = cloud_of(seen, view.joint, over, shown_of(seen, view));
+  const Comparison& seen = recording_of(now, view.recording);
+  // A zoom between two samples, or past the end, shows none of them.
+  if (const Shown shown = shown_of(seen, view); is_part && shown.count > 0) {
+    const Cloud part = cloud_of(seen, view.joint, over, shown);
     chart.series.push_back(points_of("the time that is shown", role_of(bench, view.recording).tone,
                                      part.at, part.error));
   }
@@ -182,16 +184,26 @@ nlohmann::json blocks_of(std::vector<report::Block> blocks) {
   return report::to_json(page).at("sections").at(0).at("blocks");
 }
 
+[[noreturn]] void refuse_view(const std::string& words) {
+  throw Refused(Refused::Why::kBadRequest, words);
+}
+
 }  // namespace
+
+void check_shown(const std::optional<double>& from_s, const std::optional<double>& to_s) {
+  if (from_s.has_value() != to_s.has_value()) {
+    refuse_view("from and to go together: one of them is missing.");
+  }
+  if (from_s && !(*from_s < *to_s)) refuse_view("from has to lie before to.");
+}
 
 void check(const Workbench& bench, const View& view) {
   const Treated& all = *bench.input().recordings;
-  const auto refuse = [](const std::string& words) {
-    throw Refused(Refused::Why::kBadRequest, words);
-  };
-  if (view.joint >= bench.robot().joints.size()) refuse("There is no such joint.");
+  if (view.joint >= bench.robot().joints.size()) refuse_view("There is no such joint.");
   const std::size_t count = all.logs.size() + all.holdout.size();
-  if (view.recording >= count || view.beside.value_or(0) >= count) refuse("No such recording.");
+  if (view.recording >= count || view.beside.value_or(0) >= count)
+    refuse_view("No such recording.");
+  check_shown(view.from_s, view.to_s);
 }
 
 const Role& role_of(const Workbench& bench, std::size_t recording) {
@@ -209,6 +221,13 @@ Shown shown_of(const Comparison& recording, const View& view) {
 std::string in_words(std::string name) {
   std::replace(name.begin(), name.end(), '_', ' ');
   return name;
+}
+
+std::string effect_title(const char* name) {
+  std::string words = in_words(name);
+  if (!words.empty())
+    words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
+  return words;
 }
 
 Series points_of(const std::string& name, Tone tone, const VectorXd& x, const VectorXd& y) {
@@ -244,10 +263,11 @@ nlohmann::json waterfall_of(const Workbench& bench, std::size_t joint) {
   fall.format = ".2f";
   const std::size_t count = bench.steps().size();
   for (std::size_t steps = 0; steps <= count; ++steps) {
-    const std::string label = steps == 0 ? "as read"
-                                         : fmt::format("{}. {}, joint {}", steps,
-                                                       info_of(bench.steps()[steps - 1].kind)->name,
-                                                       bench.steps()[steps - 1].joint + 1);
+    const std::string label =
+        steps == 0 ? "as read"
+                   : fmt::format("{}. {}, joint {}", steps,
+                                 effect_title(info_of(bench.steps()[steps - 1].kind)->name),
+                                 bench.steps()[steps - 1].joint + 1);
     fall.steps.push_back({label, bench.held_out_percent(joint, steps)});
   }
   return block_of(std::move(fall));

@@ -27,14 +27,16 @@ struct View {
 /// That the document of the API allows.
 inline constexpr std::size_t kMostPixels = 8000;
 
-/// Throws Refused where there is no such joint or recording.
+/// Throws Refused unless both are there or none, and `from_s` before `to_s`.
+void check_shown(const std::optional<double>& from_s, const std::optional<double>& to_s);
+/// Throws Refused where there is no such joint or recording, or as check_shown().
 void check(const Workbench& bench, const View& view);
 
 /// The charts of a joint, as report pages hold them (report/page.hpp): torque over time, error over
 /// time, error over velocity, error over position, of the model `now`. Curves over time keep the
 /// lowest and the highest point of every pixel of the part that is shown, and of the parts beside
-/// it; of that part the points of the others are marked. Throws as check().
-/// `spans` are marked over time.
+/// it; of that part the points of the others are marked, where a sample lies in it. Throws as
+/// check(). `spans` are marked over time.
 nlohmann::json charts_of(const Workbench& bench, const Compared& now, const View& view,
                          const std::vector<report::SpanMark>& spans = {});
 /// The error of a joint, step by step.
@@ -58,6 +60,9 @@ struct Shown {
 
 /// "coulomb friction" of "coulomb_friction".
 [[nodiscard]] std::string in_words(std::string name);
+
+/// "Coulomb friction" of it: as the page calls an effect.
+[[nodiscard]] std::string effect_title(const char* name);
 
 /// A cloud of points.
 [[nodiscard]] report::Series points_of(const std::string& name, report::Tone tone,

@@ -70,16 +70,24 @@ ordered_json json_of(const SessionState& state, const std::string& of) {
 }
 
 // What a file holds of a session over such numbers; none: it is no such file.
-std::optional<SessionState> read(const std::filesystem::path& file, const std::string& of) {
+struct Read {
+  std::optional<SessionState> state;
+  bool is_damaged = false;  // nobody can tell whose session it was
+};
+Read read(const std::filesystem::path& file, const std::string& of) {
   try {
     const ordered_json json = ordered_json::parse(read_text_file(file));
-    if (json.at(kMark).get<int>() != kVersion || json.at("of").get<std::string>() != of) {
-      return std::nullopt;
-    }
-    return state_of(json);
+    if (json.at(kMark).get<int>() != kVersion || json.at("of").get<std::string>() != of) return {};
+    return {state_of(json)};
   } catch (const ordered_json::exception&) {
-    return std::nullopt;
+    return {std::nullopt, true};
   }
+}
+
+std::string damage_words(const std::filesystem::path& damaged, const std::filesystem::path& file) {
+  return fmt::format(
+      "{} is empty, cut off or no session at all. It stays as it is; this session is kept in {}",
+      damaged.filename().string(), file.filename().string());
 }
 
 }  // namespace
@@ -130,18 +138,21 @@ std::uint64_t fingerprint_of(const Input& input) {
 KeptSession::KeptSession(const std::filesystem::path& recording, const Input& input)
     : of_(fmt::format("{:016x}", fingerprint_of(input))) {
   constexpr int kMostTried = 100;
+  std::optional<std::filesystem::path> damaged;
   try {
     for (int number = 1; number <= kMostTried; ++number) {
       const std::filesystem::path file = numbered(recording, number);
       std::error_code ignored;
       if (!std::filesystem::exists(std::filesystem::symlink_status(file, ignored))) {
         file_ = file;
+        if (damaged) damaged_ = damage_words(*damaged, file);
         return;
       }
-      const std::optional<SessionState> state = read(file, of_);
-      if (!state) continue;
+      const Read found = read(file, of_);
+      if (found.is_damaged && !damaged) damaged = file;
+      if (!found.state) continue;
       file_ = file;
-      found_ = *state;
+      found_ = *found.state;
       return;
     }
     problem_ = "there are a hundred sessions beside the recording already";

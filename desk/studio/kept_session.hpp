@@ -35,6 +35,9 @@ class KeptSession {
   KeptSession(const std::filesystem::path& recording, const Input& input);
 
   [[nodiscard]] const SessionState& found() const { return found_; }
+  /// Of a file that stands where the session would be and cannot be read as one, what came of it,
+  /// in words; empty: there is none. It stays as it is: it may be somebody's notes.
+  [[nodiscard]] const std::string& damaged() const { return damaged_; }
   void keep(const SessionState& state);
   /// Not all that was found could be taken up: it stays beside the file, as "a.studio.json.before".
   void set_found_aside();
@@ -48,6 +51,7 @@ class KeptSession {
   std::string of_;
   SessionState found_;
   std::string problem_;
+  std::string damaged_;
 };
 
 /// {joint, recording, beside, from, to}, counted from 1, of what is not there null; and back, of

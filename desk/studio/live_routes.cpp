@@ -23,6 +23,7 @@ ordered_json setup_of(const Stage& stage) {
   }
   ordered_json setup = live::setup_json(stage.live());
   setup["loaded"] = stage.is_loaded();
+  setup["session"] = stage.session_number();
   setup["takes_files"] = false;
   setup["has_results"] = false;
   return setup;
@@ -32,7 +33,10 @@ void set_up_looking(Api& api, Stage& stage) {
   api.on("GET /live", [&stage](const ApiRequest&) { return setup_of(stage); });
   api.on("GET /live/now", [&stage](const ApiRequest& asked) {
     const live::Live& live = stage.live();
-    return live::moment_json(live.moment(asked.parameters.at("from").get<std::uint64_t>()), live);
+    ordered_json now =
+        live::moment_json(live.moment(asked.parameters.at("from").get<std::uint64_t>()), live);
+    now["session"] = stage.session_number();
+    return now;
   });
   api.on("GET /live/frozen", [&stage](const ApiRequest& asked) {
     const auto pixels = asked.parameters.at("pixels").get<std::size_t>();

@@ -1,5 +1,8 @@
 #include "studio/results_view.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -26,6 +29,16 @@ ordered_json cell_json(const std::string& words, const std::string& level) {
   return {{"words", words}, {"level", level}};
 }
 
+namespace {
+
+// As much of a value as an answer repeats.
+std::string shortened(const std::string& value) {
+  constexpr std::size_t kMost = 40;
+  return value.size() <= kMost ? value : value.substr(0, kMost) + "...";
+}
+
+}  // namespace
+
 std::string spaced(std::string name) {
   std::replace(name.begin(), name.end(), '_', ' ');
   return name;
@@ -33,11 +46,20 @@ std::string spaced(std::string name) {
 
 void refuse_filter(const std::string& words) { throw Refused(Refused::Why::kBadRequest, words); }
 
-void check_filters(const ResultsFilter& filter, const std::vector<std::string>& known) {
-  for (const auto& [key, value] : filter) {
-    if (std::find(known.begin(), known.end(), key) == known.end()) {
-      refuse_filter("There is no such filter.");
-    }
+void check_filters(const ResultsFilter& filter, const ordered_json& known) {
+  for (const auto& asked : filter) {
+    const std::string& key = asked.first;
+    const std::string& value = asked.second;
+    const auto found = std::find_if(known.begin(), known.end(),
+                                    [&](const ordered_json& one) { return one.at("key") == key; });
+    if (found == known.end()) refuse_filter("There is no such filter.");
+    std::vector<std::string> allowed;
+    for (const ordered_json& option : found->at("options")) allowed.push_back(option.at("value"));
+    if (std::find(allowed.begin(), allowed.end(), value) != allowed.end()) continue;
+    std::erase(allowed, "");  // all of them, which is to leave it out
+    refuse_filter(fmt::format(
+        "{} is \"{}\"; allowed: {}.", key, shortened(value),
+        allowed.empty() ? "to leave it out" : fmt::format("{}", fmt::join(allowed, ", "))));
   }
 }
 

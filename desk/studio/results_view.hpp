@@ -58,8 +58,8 @@ struct FilterOption {
 
 /// Throws Refused: what a filter asks for is not there.
 [[noreturn]] void refuse_filter(const std::string& words);
-/// Throws Refused where a filter is none of these.
-void check_filters(const ResultsFilter& filter, const std::vector<std::string>& known);
+/// Throws Refused where a filter is none of these (filter_json), or its value none of its options.
+void check_filters(const ResultsFilter& filter, const nlohmann::ordered_json& known);
 /// The filter's value; empty: all.
 [[nodiscard]] std::string value_of(const ResultsFilter& filter, const std::string& key);
 

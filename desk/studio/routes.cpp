@@ -6,6 +6,7 @@
 #include "common/refused.hpp"
 #include "studio/api.hpp"
 #include "studio/assets.hpp"
+#include "studio/charts.hpp"
 #include "studio/live_routes.hpp"
 #include "studio/load_routes.hpp"
 #include "studio/results_routes.hpp"
@@ -25,12 +26,9 @@ std::size_t number_in(const json& parameters, const char* name) {
 // The part of the time that is shown, where the request names one.
 template <typename Any>
 void set_range(const json& parameters, Any& view) {
-  if (parameters.contains("from") != parameters.contains("to")) {
-    throw Refused(Refused::Why::kBadRequest, "from and to go together: one of them is missing.");
-  }
-  if (!parameters.contains("from")) return;
-  view.from_s = parameters["from"].template get<double>();
-  view.to_s = parameters["to"].template get<double>();
+  if (parameters.contains("from")) view.from_s = parameters["from"].template get<double>();
+  if (parameters.contains("to")) view.to_s = parameters["to"].template get<double>();
+  check_shown(view.from_s, view.to_s);
 }
 
 View view_of(const json& parameters) {

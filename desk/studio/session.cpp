@@ -40,6 +40,7 @@ void Session::take_up_kept() {
     }
     kept_.set_found_aside();
   }
+  if (not_taken_up_.empty()) not_taken_up_ = kept_.damaged();
   take_up_view(found);
   answer_ = found.answer;
   if (!answer_.is_object()) return;

@@ -8,7 +8,7 @@
 
 namespace offnominal::desk::studio {
 
-Stage::Stage(Input input) : session_(std::make_shared<Session>(std::move(input))) {}
+Stage::Stage(Input input) : session_(std::make_shared<Session>(std::move(input))), shown_(1) {}
 
 Stage::Stage(std::unique_ptr<live::Live> live, OpenRecording open)
     : open_(std::move(open)), live_(std::move(live)) {}
@@ -38,6 +38,11 @@ bool Stage::is_loaded() const {
   return session_ != nullptr;
 }
 
+std::size_t Stage::session_number() const {
+  const std::lock_guard guard(lock_);
+  return shown_;
+}
+
 live::Live& Stage::live() const {
   if (live_) return *live_;
   throw Refused(
@@ -54,11 +59,18 @@ Intake& Stage::intake() const {
 
 nlohmann::ordered_json Stage::explain_detection() {
   const std::lock_guard guard(making_);
-  const live::Live::Written written = live().write_detection();
-  auto made = std::make_shared<Session>(open_(written.since));
-  static_cast<void>(made->start_to_explain());
-  show(std::move(made));
-  return {{"saved", written.since}, {"before", written.before}};
+  const std::uint64_t detection = live().detection_number();
+  if (detection == 0 || detection != explained_) {
+    live::Live::Written written = live().write_detection();
+    auto made = std::make_shared<Session>(open_(written.since));
+    static_cast<void>(made->start_to_explain());
+    show(std::move(made));
+    explained_ = written.detection;
+    explained_as_ = std::move(written);
+  }
+  return {{"saved", explained_as_.since},
+          {"before", explained_as_.before},
+          {"session", session_number()}};
 }
 
 nlohmann::ordered_json Stage::use_files(bool replace) {
@@ -105,6 +117,7 @@ void Stage::show(std::shared_ptr<Session> made) {
   {
     const std::lock_guard shown(lock_);
     before = std::exchange(session_, std::move(made));
+    ++shown_;
   }
   if (before) before->leave();
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -41,10 +42,14 @@ class Stage {
   [[nodiscard]] ResultsView& results() const;
   [[nodiscard]] bool has_results() const { return results_ != nullptr; }
   [[nodiscard]] bool is_loaded() const;
+  /// Counts the sessions that were shown; 0: none was. A page sees by it that another one has begun
+  /// one.
+  [[nodiscard]] std::size_t session_number() const;
 
   /// What came since the last detection becomes a recording, that one the session's, and the search
   /// for what the model lacks there begins. Throws Refused where nothing was detected, InputError
-  /// where the recording cannot be written or will not do; the session before stays.
+  /// where the recording cannot be written or will not do; the session before stays. Of a detection
+  /// whose session is shown already nothing is begun anew.
   nlohmann::ordered_json explain_detection();
   /// The files that the page was given become the session's: {written: [names]}. Throws Refused
   /// where something is missing, and where a session with steps would be lost and `replace` does
@@ -62,9 +67,12 @@ class Stage {
 
   OpenRecording open_;
   OpenFiles open_files_;
-  std::mutex making_;        // one session after the other
-  mutable std::mutex lock_;  // of the session that is shown
+  std::mutex making_;                 // one session after the other
+  std::uint64_t explained_ = 0;       // the number of the detection that the session is over
+  live::Live::Written explained_as_;  // and its files
+  mutable std::mutex lock_;           // of the session that is shown
   std::shared_ptr<Session> session_;
+  std::size_t shown_ = 0;  // sessions, up to this one
   std::unique_ptr<Intake> intake_;
   std::unique_ptr<ResultsView> results_;
   std::unique_ptr<live::Live> live_;  // ends first

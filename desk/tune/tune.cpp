@@ -29,8 +29,8 @@ constexpr std::array kSizes = {8, 16, 24, 35, 48, 64};
 constexpr std::array kTimesBase = {1.0, 2.5, 6.0};
 constexpr std::array kRatesOfRanges = {2.5, 25.0, 250.0};
 constexpr int kSizeOfRates = 35;
-// In the loop, of so many units: a rate of 25 was well, 250 made frictions of a seven-joint arm worse
-// (docs/diagnosis.md).
+// In the loop, of so many units: a rate of 25 was well, 250 made frictions of a seven-joint arm
+// worse (docs/diagnosis.md).
 constexpr double kFastInTheLoop = 100;
 // A lower rate, or a smaller network, that misses no more than this beyond the best is taken.
 constexpr double kAsWellLearnt = 0.02;

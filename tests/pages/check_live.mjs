@@ -16,6 +16,11 @@ const kLooks = [
   [2560, "dark"],
 ];
 
+const kFrozenLooks = [
+  [400, "light"],
+  [400, "dark"],
+];
+
 /** The robot judged joint by joint, under hostile names. */
 async function hostileRobot(file, folder) {
   const robot = join(folder, "arm.toml");
@@ -69,11 +74,35 @@ async function checkAlarm(page, fault) {
   const alarm = await page.textContent("#place-detection .note");
   if (!alarm.includes("Off nominal") || !alarm.includes("joint 2")) fault(`the alarm says: ${alarm}`);
   if (!(await page.textContent("#place-injected")).includes("Disturbance torque, joint 2")) fault("the fault is not listed");
+  await page.fill("#fault-size", "");
+  await page.click("#fault-inject");
+  const refused = await page.textContent("#place-liveMessage");
+  if (!refused.includes("no number")) fault(`an empty size is answered with: ${refused}`);
+  if (!(await page.textContent("#place-injected")).includes("8 N m")) fault("an empty size replaces a fault that is there");
   await page.waitForSelector("#live-explain:not([aria-disabled])");
   await page.waitForSelector("#place-frozen figure canvas");
   if ((await page.$$("#place-frozen figure")).length !== 2) fault("what was around the alarm is not there for every joint");
   const answer = await page.textContent("#place-detection .note");
   if (!answer.includes("confidence") && !answer.includes("Unknown")) fault(`isolation says nothing: ${answer}`);
+}
+
+/** Of the first chart around the detection: its width, that of its place, and the colour of its numbers. */
+function frozenLook(page) {
+  return page.evaluate(() => {
+    const { chart, host } = studio.live.frozen[0];
+    return { width: chart.getWidth(), room: host.clientWidth, ink: chart.getOption().xAxis[0].axisLabel.color };
+  });
+}
+
+/** What is around the alarm follows window and colours before any session is there to bring charts of its own. */
+async function checkFrozen(page, options, fault) {
+  const { ink: light } = await frozenLook(page);
+  await look(page, kFrozenLooks, "live_frozen", options, fault);
+  const { width, room, ink } = await frozenLook(page);
+  if (width !== room) fault(`the chart around the alarm is ${width} pixels wide in a place of ${room}`);
+  if (ink === light) fault(`in dark colours the numbers of the chart around the alarm stay ${ink}`);
+  await page.setViewportSize({ width: 1280, height: 900 });
+  await page.emulateMedia({ colorScheme: "light" });
 }
 
 async function checkExplanation(page, folder, fault) {
@@ -89,6 +118,20 @@ async function checkExplanation(page, folder, fault) {
   const before = await pictures(page);
   await page.waitForTimeout(500);
   if ((await pictures(page)) <= before) fault("beside the analysis the live view stands still");
+}
+
+/** A second page over the same run shows the analysis that the first has asked for, and its own click begins no other. */
+async function checkOtherPage(other, page, fault) {
+  const shown = other.waitForFunction(() => document.querySelector("#place-learn .answer-words") !== null, undefined, { timeout: 30_000 });
+  await shown.catch(() => fault("a second page does not show the analysis that the first has asked for"));
+  if (!(await other.isVisible("#effects"))) fault("on a second page the analysis is not there");
+  const session = () => page.evaluate(() => studio.live.now.session);
+  const before = await session();
+  await other.click("#live-explain");
+  await other.waitForFunction(() => studio.live.saved.startsWith("Written: "));
+  await other.waitForTimeout(300);
+  if ((await session()) !== before) fault("a second page's click begins another session over the same detection");
+  await other.close();
 }
 
 async function checkRest(page, folder, fault) {
@@ -139,7 +182,10 @@ async function check({ options, folder, start, newContext, axeSource }, fault) {
   if (options.measure) return await measure(page, program, Number(options.measure));
   await checkMoving(page, fault);
   await checkAlarm(page, fault);
+  await checkFrozen(page, { ...options, axeSource }, fault);
+  const other = await openPage(await newContext(), address, "body[data-live]", expected, fault);
   await checkExplanation(page, folder, fault);
+  await checkOtherPage(other, page, fault);
   await look(page, kLooks, "live", { ...options, axeSource }, fault);
   await checkRest(page, folder, fault);
   await checkNames(page, fault);

@@ -56,17 +56,29 @@ export function shownFigures() {
   return figures.filter(({ host }) => host.closest("[hidden]") === null);
 }
 
+/** In the present width and colours, whatever it was drawn in. */
+export function redraw(figure: Figure) {
+  figure.option = null; // in other colours, its tool too
+  figure.chart?.resize();
+  drawFigure(figure);
+}
+
 export function redrawAll() {
-  for (const figure of shownFigures()) {
-    figure.option = null; // in other colours, its tool too
-    figure.chart?.resize();
-    drawFigure(figure);
-  }
+  shownFigures().forEach(redraw);
 }
 
 export function drawAll() {
   shareExtents();
   shownFigures().forEach(drawFigure);
+  followWindow();
+}
+
+let isFollowing = false;
+
+/** From the first time on all figures follow the window's width and colours, and the paper's. */
+export function followWindow() {
+  if (isFollowing) return;
+  isFollowing = true;
   darkPreference.addEventListener("change", redrawAll);
   let width = window.innerWidth;
   window.addEventListener("resize", () => {

@@ -1,12 +1,9 @@
 import { say } from "../report/keys";
 import type { Effect } from "./api";
 import { change, changeModel, keepLook } from "./changes";
-import { drag, drawCharts } from "./charts_shown";
+import { drag, drawCharts, showDragged } from "./charts_shown";
 import { dragging, letGo } from "./drag";
-import { headlineContent } from "./joints";
 import { complainOf } from "./message";
-import { replaceContent } from "./parts";
-import { placeOf } from "./places";
 import { ask } from "./server";
 import { look, session } from "./session";
 import { showFound } from "./show";
@@ -23,7 +20,7 @@ export const actions = {
   snapBack: () => {
     if (!dragging.isOff) return;
     letGo();
-    replaceContent(placeOf("headline"), headlineContent());
+    showDragged(null);
     drawCharts().catch(complainOf);
   },
   undoAll: () => changeModel(() => ask("DELETE", "/steps")),

@@ -1,5 +1,5 @@
 import type { Chart, Drawn, Waterfall } from "../report/document";
-import { drawAll, drawFigure, shareExtents, shownFigures, zoomGroup } from "../report/drawing";
+import { drawAll, shareExtents, zoomGroup } from "../report/drawing";
 import { figures, figureWith } from "../report/figure";
 import { chartOf, type Figure } from "../report/figure_type";
 import { itemAt } from "../report/lists";
@@ -48,19 +48,6 @@ export function forgetFigures(beginning: string) {
   }
 }
 
-let isDrawn = false;
-
-/** All figures; from the first time on they follow the window. */
-export function drawEverything() {
-  if (!isDrawn) {
-    isDrawn = true;
-    drawAll();
-    return;
-  }
-  shareExtents();
-  for (const figure of shownFigures()) drawFigure(figure);
-}
-
 /** The picture of this place: made where there is none yet, else filled anew. */
 function filledFigure(place: string, block: Drawn, host: HTMLElement): Figure {
   const there = drawn.get(place);
@@ -75,7 +62,7 @@ export function showCharts(answer: AnswerTo<"GET", "/charts">, host: HTMLElement
   const shown = answer.charts.map((block, index) => filledFigure(`chart.${index}`, block, host));
   shown.push(filledFigure("fall.0", answer.waterfall, fallHost));
   if (first) {
-    drawEverything();
+    drawAll();
     for (const figure of timeFigures()) {
       chartOf(figure).on("datazoom", zoomed);
       followChart(figure);

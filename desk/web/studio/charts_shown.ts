@@ -1,9 +1,9 @@
-import type { AnswerTo, QueryTo } from "./api";
+import type { AnswerTo, Errors, QueryTo } from "./api";
 import { drawArm } from "./arm";
 import { chartQuery, showCharts, showFiner, zoomRange } from "./charts";
 import { dragging, followDrag, type Dragged } from "./drag";
 import { drawExplored } from "./explore";
-import { headlineContent } from "./joints";
+import { headlineContent, showDraggedJoint } from "./joints";
 import { complainOf } from "./message";
 import { replaceContent } from "./parts";
 import { placeOf } from "./places";
@@ -55,6 +55,12 @@ function showArm(range: TimeRange | null) {
   drawArm(range).catch(complainOf);
 }
 
+/** Wherever the error of the joint stands: that of a model off its fit; null: of the model as it is. */
+export function showDragged(dragged: Errors | null) {
+  replaceContent(placeOf("headline"), headlineContent(dragged));
+  showDraggedJoint(dragged);
+}
+
 /** Charts and errors follow a number that is dragged. */
 export function drag(number: Dragged): Promise<void> {
   return followDrag(number, drawDragged).catch(complainOf);
@@ -66,6 +72,6 @@ async function drawDragged(number: Dragged) {
   const answer = await lastAnswer(ask("GET", "/moved", { query }));
   if (answer === null || !dragging.isOff || answer.revision !== state().revision) return;
   const { fitted_percent, held_out_percent } = answer;
-  replaceContent(placeOf("headline"), headlineContent({ fitted_percent, held_out_percent }));
+  showDragged({ fitted_percent, held_out_percent });
   showFiner(answer);
 }

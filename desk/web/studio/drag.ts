@@ -49,7 +49,11 @@ function dragRow(step: Step, name: string, range: Draggable, actions: Actions) {
   slider.value = String(range.value);
   const unit = step.parameters[name]?.unit ?? "";
   const told = element("output", { for: id });
-  const words = () => (told.textContent = withUnit(formatSignificant(Number(slider.value), 4), unit));
+  const words = () => {
+    const value = withUnit(formatSignificant(Number(slider.value), 4), unit);
+    told.textContent = value;
+    slider.setAttribute("aria-valuetext", value);
+  };
   words();
   const back = () => {
     if (Number(slider.value) === range.value) return;

@@ -63,12 +63,13 @@ export function exploreElement() {
   return element("div", { class: "explore" }, part(map), part(spectrum));
 }
 
-export function showExploreChoices(joints: Joint[], redraw: () => void) {
+/** `slides`: the joint that is looked at has no turns. */
+export function showExploreChoices(joints: Joint[], slides: boolean, redraw: () => void) {
   const { map, spectrum } = explorePlaces;
   replaceContent(map.choice, ...sideChoice("x", "Map over", joints, redraw), ...sideChoice("y", "and", joints, redraw));
   const overs: Choice[] = [
     ["frequency", "frequency"],
-    ["order", "order: waves per turn of the joint"],
+    ["order", slides ? "waves per metre of the joint" : "order: waves per turn of the joint"],
   ];
   replaceContent(
     spectrum.choice,

@@ -1,13 +1,14 @@
 import { keyFiguresElement } from "../report/blocks";
 import type { KeyFigure, Level, Value } from "../report/document";
-import { element } from "../report/element";
+import { element, within } from "../report/element";
 import { formatNumber } from "../report/format";
 import type { Errors, Joint } from "./api";
 import { choose } from "./changes";
 import { choiceOf, type Choice } from "./choices";
 import { baseName, explained, percent } from "./parts";
+import { placeOf } from "./places";
 import { hasResults, openRunTitle } from "./results";
-import { currentJoint, errorOf, look, state } from "./session";
+import { currentJoint, look, rowNumbers, state, type RowNumbers } from "./session";
 
 export function headerContent() {
   const names = (held: boolean) => state().recordings.filter((each) => each.held_out === held).map((each) => baseName(each.name));
@@ -25,24 +26,38 @@ export function headerContent() {
   return header;
 }
 
+function barWidth(value: number | null) {
+  return `${Math.min(100, Math.max(0, value ?? 0))}%`;
+}
+
+function numbersOf({ start, now, words }: RowNumbers) {
+  if (start === now && words === "") return [percent(now)];
+  return [`${percent(start)} → `, element("b", {}, percent(now)), words];
+}
+
+/** The list of joints may stay in sight where the headline does not: it follows a number that is dragged, too. */
+export function showDraggedJoint(dragged: Errors | null) {
+  const row = placeOf("joints").querySelector(`label[for="joint-${look.joint}"]`);
+  if (row === null) return;
+  const numbers = rowNumbers(currentJoint(), dragged);
+  within(row, ".joint-numbers").replaceChildren(...numbersOf(numbers));
+  within<HTMLElement>(row, ".is").style.width = barWidth(numbers.now);
+}
+
 function jointRow(joint: Joint) {
   const id = `joint-${joint.joint}`;
   const input = element("input", { type: "radio", name: "joint", id, value: String(joint.joint) });
   input.checked = joint.joint === look.joint;
   input.addEventListener("change", () => choose({ joint: joint.joint }));
-  const start = errorOf(joint, "start");
-  const now = errorOf(joint, "now");
+  const numbers = rowNumbers(joint, null);
   const bar = element("span", { class: "bar", "aria-hidden": "true" });
-  const width = (value: number | null) => `${Math.min(100, Math.max(0, value ?? 0))}%`;
-  bar.append(element("i", { class: "was", style: `width:${width(start)}` }));
-  bar.append(element("i", { class: "is", style: `width:${width(now)}` }));
-  const numbers =
-    start === now ? percent(now) : [`${percent(start)} → `, element("b", {}, percent(now))];
+  bar.append(element("i", { class: "was", style: `width:${barWidth(numbers.start)}` }));
+  bar.append(element("i", { class: "is", style: `width:${barWidth(numbers.now)}` }));
   const label = element("label", { for: id });
   label.append(
     element("span", { class: "joint-name" }, `${joint.joint}. ${joint.name}${joint.moves ? "" : " (stands still)"}`),
     bar,
-    element("span", { class: "joint-numbers" }, ...[numbers].flat()),
+    element("span", { class: "joint-numbers" }, ...numbersOf(numbers)),
   );
   return element("div", { class: "joint" }, input, label);
 }

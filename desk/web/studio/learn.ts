@@ -4,7 +4,7 @@ import { itemAt } from "../report/lists";
 import type { Actions } from "./actions";
 import type { EffectAt, Explanation, FindingCard, FoundAnswer, JointAnswer, State } from "./api";
 import { evidenceElement } from "./evidence";
-import { button, effectTitle, foldWith, noteWith, parameterList } from "./parts";
+import { button, effectTitle, foldWith, noteWith, parameterList, withPlainNames } from "./parts";
 
 /** Which effect of which joint. */
 type EffectOn = Pick<EffectAt, "effect" | "joint">;
@@ -77,9 +77,13 @@ function choiceList(effects: EffectAt[], id: string, state: State, actions: Acti
   return list;
 }
 
+function plain(words: string, { joints }: State) {
+  return withPlainNames(words, joints[0]?.effects.map(({ effect }) => effect) ?? []);
+}
+
 function jointAnswer(answer: JointAnswer, search: number, state: State, actions: Actions) {
   const root = element("div", { class: "answer" });
-  root.append(element("h3", {}, `Joint ${answer.joint}`), element("p", {}, answer.words));
+  root.append(element("h3", {}, `Joint ${answer.joint}`), element("p", {}, plain(answer.words, state)));
   const cards = element("ul", { class: "findings" });
   answer.cards.forEach((card, index) =>
     cards.append(findingCard(card, `${answer.joint}-${index}`, search, state, actions)),
@@ -97,7 +101,7 @@ function jointAnswer(answer: JointAnswer, search: number, state: State, actions:
 }
 
 function answerElement(found: FoundAnswer, search: number, state: State, actions: Actions) {
-  const root = element("div", {}, element("p", { class: "answer-words" }, found.words));
+  const root = element("div", {}, element("p", { class: "answer-words" }, plain(found.words, state)));
   const silent = found.joints.filter(
     ({ cards, classes }) => cards.length === 0 && classes.length === 0,
   );
@@ -106,7 +110,7 @@ function answerElement(found: FoundAnswer, search: number, state: State, actions
   }
   if (silent.length > 0) {
     const rest = foldWith("nothing-to-add", `Joints with nothing to add (${silent.length})`);
-    for (const answer of silent) rest.append(element("p", {}, answer.words));
+    for (const answer of silent) rest.append(element("p", {}, plain(answer.words, state)));
     root.append(rest);
   }
   if (found.advice.length > 0) {
@@ -142,7 +146,7 @@ export function updateProgress(found: Explanation) {
 /** The search for what is missing: its button, its progress or its answer. */
 export function learnContent(found: Explanation, state: State, actions: Actions) {
   if (found.state === "running") return progressContent(found, actions);
-  const again = state.steps.length > 0 || found.state === "done";
+  const again = state.steps.length > 0;
   const content: HTMLElement[] = [
     button("search", again ? "Search what is left" : "Search for missing effects", actions.search, {
       class: "action main",

@@ -62,6 +62,7 @@ function takeMoment(now: Moment) {
   live.picture?.draw(live.curves, live.curves[0]?.threshold.at(-1)?.[0] ?? 0);
   live.pictures.push(performance.now());
   document.body.dataset.pictures = String(Number(document.body.dataset.pictures ?? 0) + 1);
+  takeSession(now);
   showDetection(now);
   if (isBench()) {
     showInjected(now);
@@ -70,6 +71,13 @@ function takeMoment(now: Moment) {
   if (performance.now() - live.numbersAt < kLiveNumbersMs) return;
   live.numbersAt = performance.now();
   showNumbers(now);
+}
+
+/** Another page over the same live view may have begun a session: this one takes it up by itself. */
+function takeSession({ session }: Moment) {
+  if (live.session === null || session === live.session) return;
+  live.session = session;
+  live.onLoaded(false).catch(complainLive);
 }
 
 /** As long as the page is there: thirty times a second, and once where nobody sees it. */
@@ -173,8 +181,9 @@ function liveSection() {
 }
 
 /** Puts the live view on the page; `onLoaded`: called when a stretch was handed to the analysis. */
-export function startLive(setup: LiveSetup, host: HTMLElement, onLoaded: () => Promise<void>) {
+export function startLive(setup: LiveSetup, host: HTMLElement, onLoaded: (isOwn: boolean) => Promise<void>) {
   live.setup = setup;
+  live.session = setup.session;
   live.onLoaded = onLoaded;
   live.curves = emptyCurves(setup.judged.length);
   host.append(liveSection());

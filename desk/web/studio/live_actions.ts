@@ -40,8 +40,16 @@ export const liveActions = {
   explain: () =>
     act(async () => {
       say("The stretch is handed to the analysis.");
-      const { saved, before } = await ask("POST", "/live/explanation");
-      live.saved = `Written: ${saved}, and of before the detection ${before}`;
-      await live.onLoaded();
+      const shown = live.session;
+      live.session = null; // until the answer says which, the moments that come meanwhile do not load it
+      try {
+        const { saved, before, session } = await ask("POST", "/live/explanation");
+        live.saved = `Written: ${saved}, and of before the detection ${before}`;
+        live.session = session;
+      } catch (error) {
+        live.session = shown;
+        throw error;
+      }
+      await live.onLoaded(true);
     }),
 };

@@ -1,7 +1,8 @@
 import { element } from "../report/element";
 import { formatNumber, formatSignificant, withUnit } from "../report/format";
 import type { Moment } from "./api";
-import { liveActions } from "./live_actions";
+import { complainLive, liveActions } from "./live_actions";
+import { sizeFrom } from "./live_size";
 import { jointName, live, liveSetup } from "./live_state";
 import { button, effectTitle, replaceContent } from "./parts";
 import { place, placeOf } from "./places";
@@ -39,8 +40,12 @@ export function benchContent() {
   };
   kind.addEventListener("change", follow);
   follow();
-  const inject = () =>
-    liveActions.inject(kind.value, joint.disabled ? 0 : Number(joint.value), size.disabled ? 0 : Number(size.value));
+  const inject = () => {
+    const given = size.disabled ? 0 : sizeFrom(size.value, faultOf(kind.value));
+    size.setAttribute("aria-invalid", String(typeof given === "string"));
+    if (typeof given === "string") return complainLive(given);
+    return liveActions.inject(kind.value, joint.disabled ? 0 : Number(joint.value), given);
+  };
   const row = element("div", { class: "live-row" });
   row.append(
     element("label", { for: "fault-kind" }, "Fault"),

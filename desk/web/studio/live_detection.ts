@@ -1,4 +1,4 @@
-import { drawFigure, shareExtents } from "../report/drawing";
+import { followWindow, redraw, shareExtents } from "../report/drawing";
 import { element, within, type Attributes } from "../report/element";
 import { figureWith } from "../report/figure";
 import { formatNumber } from "../report/format";
@@ -25,9 +25,14 @@ function actWords({ act_t_s, act_joint }: Detection) {
   return ` Beyond the level to act since ${formatNumber(act_t_s, ".2f")} s${who}.`;
 }
 
+const kTorqueSpaceWords =
+  'With space = "torque" and isolation = true in [estimator] of the robot file the monitor says which joint it is, and which kind of fault.';
+
 function answerWords({ answer, joint }: Detection) {
   if (answer === null) {
-    return joint === null ? "" : " Which fault it is will be said in a moment.";
+    if (joint !== null) return " Which fault it is will be said in a moment.";
+    // All joints are judged together there, and nothing else will come.
+    return liveSetup().space === "acceleration" ? ` ${kTorqueSpaceWords}` : "";
   }
   return ` ${answer.words}${answer.decided ? "" : " (so far)"}.`;
 }
@@ -93,5 +98,7 @@ async function showFrozen() {
     charts.forEach((block, at) => refill(itemAt(live.frozen, at), block));
   }
   shareExtents();
-  live.frozen.forEach(drawFigure);
+  // While it was hidden the window may have become another.
+  live.frozen.forEach(redraw);
+  followWindow();
 }

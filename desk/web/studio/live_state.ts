@@ -21,7 +21,10 @@ export const live: {
   saved: string;
   frozen: Figure[];
   fillTable: ((now: Moment) => void) | null;
-  onLoaded: () => Promise<void>;
+  /** `isOwn`: this page has asked for it, and shows it. */
+  onLoaded: (isOwn: boolean) => Promise<void>;
+  /** The number of the session that this page shows or is about to; null: it has not heard of it yet. */
+  session: number | null;
   /** What stands on the page now, as text: it is written anew only where it says something else. */
   written: { faults: string; detection: string; recording: string; complaint: string };
 } = {
@@ -38,6 +41,7 @@ export const live: {
   frozen: [],
   fillTable: null,
   onLoaded: async () => {},
+  session: null,
   written: { faults: "", detection: "", recording: "", complaint: "" },
 };
 

@@ -15,7 +15,7 @@ export function liveHeading() {
 
 function controllerWords({ controller }: Moment) {
   if (controller === null) return "says nothing of itself on this bus";
-  if (controller.fault !== null) return `${controller.state}: ${controller.fault}`;
+  if (controller.fault !== null) return `${controller.state}: ${controller.fault}, ${controller.fault_words}`;
   return controller.slows ? `${controller.state}, its motion slowed` : controller.state;
 }
 

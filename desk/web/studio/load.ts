@@ -1,6 +1,6 @@
 import { element, within, type Child } from "../report/element";
 import { hiddenText } from "../report/words";
-import type { LoadRecording, LoadRobot, LoadState, LoadUrdf, SignalEdit, WrittenAtRest } from "./api";
+import type { LoadRecording, LoadRobot, LoadState, LoadUrdf, SignalEdit, SignalMap, WrittenAtRest } from "./api";
 import { isRobotFile, jointsWords, sizeWords } from "./files";
 import { chainElement } from "./load_chain";
 import { filesElement } from "./load_files";
@@ -173,6 +173,13 @@ function robotLine(line: Line, robot: LoadRobot | null, urdf: LoadUrdf | null) {
   return line(false, "A robot file.", "What is known of the arm: ", element("code", {}, ".toml"), ", or a URDF to make one of. Without either, ", element("code", {}, "offnominal new"), " begins one from a table of lengths and masses.");
 }
 
+/** What the columns were told by: where no position, velocity or torque has one, by nothing. */
+function columnsWords(map: SignalMap | null) {
+  if (map === null) return "Guessed once both are there, shown, and put right below.";
+  const isTold = map.signals.some(({ joint, source }) => joint !== null && source !== "");
+  return isTold ? `Told by ${map.from}; look at them below, then use them.` : "No column's name tells which signal it is: say so below.";
+}
+
 /** What is there, and what comes next: a line each. */
 function stepsContent({ robot, urdf, recordings, map }: LoadState) {
   let number = 0;
@@ -188,7 +195,7 @@ function stepsContent({ robot, urdf, recordings, map }: LoadState) {
   list.append(none ? line(false, "A recording.", wanted) : line(true, "Recordings:", recordingList(recordings)));
   const ready = map !== null && map.missing.length === 0;
   list.append(
-    line(ready, "What the columns are.", map === null ? "Guessed once both are there, shown, and put right below." : `Told by ${map.from}; look at them below, then use them.`),
+    line(ready, "What the columns are.", columnsWords(map)),
   );
   return list;
 }

@@ -226,7 +226,9 @@ function saidContent(map: SignalMap): HTMLElement[] {
 
 function useContent(map: SignalMap, fine: boolean) {
   const root = element("div", { class: "use" });
-  const ready = fine && map.missing.length === 0;
+  // What the model cannot be compared with no session takes; why stands above.
+  const refused = !map.at_rest && (mapView.findings?.error ?? null) !== null;
+  const ready = fine && !refused && map.missing.length === 0;
   const spoilt = mapView.findings?.faults.some(({ spoils }) => spoils) ?? false;
   root.append(
     button("use-these", map.at_rest ? "Write these" : "Use these", () => (map.at_rest ? loadActions.write() : loadActions.use(false)), { class: "action main", ...(ready ? {} : { "aria-disabled": "true" }) }),

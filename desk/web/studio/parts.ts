@@ -10,6 +10,12 @@ export function effectTitle(name: string) {
   return words.charAt(0).toUpperCase() + words.slice(1);
 }
 
+/** Words of the server in which these effects are called as the page calls them: "coulomb friction". */
+export function withPlainNames(words: string, effects: string[]) {
+  const name = new RegExp(`\\b(${effects.join("|")})\\b`, "g");
+  return effects.length === 0 ? words : words.replace(name, (each) => each.replaceAll("_", " "));
+}
+
 export function percent(value: Value) {
   return value === null ? "–" : `${formatNumber(value, ".2f")}\u202f%`;
 }
@@ -87,11 +93,19 @@ export function explained(summary: string, ...paragraphsOf: string[]) {
 /** A fitted number with its 95 % interval, or why it has none. */
 type Estimated = Pick<Parameter, "value" | "unit" | "ci95" | "why_no_ci95">;
 
+/** As many digits as tell the ends of an interval apart: "between 5 and 5" says nothing. */
+function intervalWords(ends: readonly (number | null)[]) {
+  for (const format of [".4g", ".5g", ".6g", ".7g", ".8g"]) {
+    const [low, high] = ends.map((each) => formatNumber(each ?? null, format));
+    if (low !== high) return `${low} and ${high}`;
+  }
+  return ends.map((each) => formatNumber(each ?? null, ".9g")).join(" and ");
+}
+
 /** "20.8 N (19.6 to 22)" of a fitted parameter. */
 export function valueWords({ value, unit, ci95, why_no_ci95 }: Estimated) {
-  const number = (each: number | null) => formatNumber(each, ".4g");
-  const text = withUnit(number(value), unit);
-  if (ci95) return `${text}, 95 % between ${ci95.map(number).join(" and ")}`;
+  const text = withUnit(formatNumber(value, ".4g"), unit);
+  if (ci95) return `${text}, 95 % between ${intervalWords(ci95)}`;
   return why_no_ci95 ? `${text}, no interval: ${why_no_ci95}` : text;
 }
 

@@ -1,7 +1,8 @@
 import { blockElement } from "../report/blocks";
+import { drawAll } from "../report/drawing";
 import { element } from "../report/element";
 import type { Figures, Filter, Results, Run, Runs } from "./api";
-import { drawEverything, forgetFigures } from "./charts";
+import { forgetFigures } from "./charts";
 import {
   addToNote,
   button,
@@ -127,7 +128,7 @@ function showFigures() {
   });
   replaceContent(placeOf("resultsFigures"), ...content);
   watchTables(placeOf("resultsFigures"));
-  drawEverything();
+  drawAll();
 }
 
 function runRow({ run, label, cells }: Run) {

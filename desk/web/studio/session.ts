@@ -1,5 +1,5 @@
 import { itemAt } from "../report/lists";
-import type { Explanation, Joint, State } from "./api";
+import type { Errors, Explanation, Joint, State } from "./api";
 
 /** What is looked at: joint and recording from 1; beside: another recording that is laid over it. */
 export interface Looked {
@@ -56,9 +56,24 @@ export function currentJoint(): Joint {
 }
 
 /** The error that counts: on held-out data where it is known. */
-export function errorOf(joint: Joint, when: "start" | "now"): number | null {
+export function errorOf(joint: Pick<Joint, "start" | "now">, when: "start" | "now"): number | null {
   const { held_out_percent, fitted_percent } = joint[when];
   return held_out_percent ?? fitted_percent;
+}
+
+/** What stands beside a joint's name, and how long its bar is. */
+export interface RowNumbers {
+  start: number | null;
+  now: number | null;
+  words: string;
+}
+
+/** `dragged`: the errors of a model that is off its fit; on fitted data where it says nothing of held-out ones. */
+export function rowNumbers(joint: Pick<Joint, "start" | "now">, dragged: Errors | null): RowNumbers {
+  if (dragged === null) return { start: errorOf(joint, "start"), now: errorOf(joint, "now"), words: "" };
+  const { held_out_percent: heldOut, fitted_percent: fitted } = dragged;
+  if (heldOut !== null) return { start: joint.start.held_out_percent, now: heldOut, words: " dragged" };
+  return { start: joint.start.fitted_percent, now: fitted, words: " dragged, fitted data" };
 }
 
 /** What a second "save" agrees to: first that a step is in doubt, then that a file is there. */

@@ -8,6 +8,7 @@ import { headerContent, headlineContent, jointChoice, recordingPicker } from "./
 import { learnContent, updateProgress } from "./learn";
 import { addToNote, baseName, button, holdControls, noteWith, replaceContent } from "./parts";
 import { placeOf } from "./places";
+import { remarkNotes } from "./remarks";
 import { hasResults } from "./results";
 import { showSave } from "./saving";
 import { currentJoint, session, state } from "./session";
@@ -17,16 +18,16 @@ import { updateTour } from "./tour";
 /** All but the charts. */
 export function show() {
   const joint = currentJoint();
-  const { robot, hints, joints, steps } = state();
+  const { robot, recordings, hints, joints, steps } = state();
   if (!hasResults()) document.title = `Studio: ${robot.name}`;
   const host = placeOf(hasResults() ? "run" : "head");
-  replaceContent(host, headerContent(), ...hints.map((hint) => noteWith("warn", hint)));
+  replaceContent(host, headerContent(), ...hints.map((hint) => noteWith("warn", hint)), ...remarkNotes(recordings));
   replaceContent(placeOf("joints"), jointChoice());
   replaceContent(placeOf("headline"), headlineContent());
   byId("effects-heading").textContent = `Effects of joint ${joint.joint}`;
   replaceContent(placeOf("effects"), ...effectList(joint, actions));
   replaceContent(placeOf("recording"), recordingPicker());
-  showExploreChoices(joints, () => explore(zoomRange()));
+  showExploreChoices(joints, joint.unit === "N", () => explore(zoomRange()));
   replaceContent(placeOf("steps"), ...keptContent(), stepList(state(), actions));
   placeOf("fall").hidden = steps.length === 0;
   showFound();
@@ -63,7 +64,7 @@ function keptContent(): HTMLElement[] {
     addToNote(note, button("begin-anew", "Begin anew", actions.undoAll));
     content.push(note);
   }
-  if (why !== "") content.push(noteWith("warn", `Not all of the session before could be taken up: ${why}`));
+  if (why !== "") content.push(noteWith("warn", `Not all of the session before could be taken up: ${why}.`));
   if (problem !== "") content.push(noteWith("warn", `What is done here is not kept: ${problem}`));
   return content;
 }

@@ -107,9 +107,10 @@ export async function start() {
       });
     } else if (!setup.loaded && setup.source !== null) showUnloaded(setup);
     if (setup.source !== null) {
-      startLive(setup, placeOf("live"), async () => {
+      startLive(setup, placeOf("live"), async (isOwn) => {
         await loadSession();
-        byId("learn").scrollIntoView({ block: "start" });
+        // Who watches another page's analysis come is left where they are.
+        if (isOwn) byId("learn").scrollIntoView({ block: "start" });
       });
     }
     if (setup.loaded) await loadSession();

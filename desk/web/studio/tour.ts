@@ -2,7 +2,7 @@ import { element } from "../report/element";
 import { button, effectTitle, percent } from "./parts";
 import { placeOf } from "./places";
 import { currentJoint, errorOf, session, state } from "./session";
-import { stageOf, type TourStage } from "./tour_stage";
+import { endOf, stageOf, type TourEnd, type TourStage } from "./tour_stage";
 
 /** A walk through what the page is for, over whichever recordings are loaded: it says what to press, and sees what came of it. */
 const tour: { on: boolean; hasLooked: boolean; isSkipped: boolean } = { on: false, hasLooked: false, isSkipped: false };
@@ -16,6 +16,17 @@ function errorWords() {
   const [start, now] = [errorOf(joint, "start"), errorOf(joint, "now")];
   return `Joint ${joint.joint}: ${which} ${percent(start)} as read${start === now ? "" : `, ${percent(now)} now`}.`;
 }
+
+const kAddedWords = "The steps above have the numbers with their intervals, sliders to feel what each does, and Undo. “Save” below writes the robot file with them; the commands beneath it do the same without this page.";
+
+const kLaterWords = "What is added becomes a step above, with its numbers and their intervals, sliders and Undo; “Save” below writes the robot file with all steps.";
+
+const kEndWords: Record<Exclude<TourEnd, "added">, string> = {
+  "nothing found": "The search names nothing to add: it says why above. The model is as it was read.",
+  "not added": "Nothing of what the search has found is added: the model is as it was read. “Add” above changes that.",
+  searching: "The search still runs, and the model is as it was read. What it finds comes up above, each with “Add”.",
+  "not searched": "No search has run and nothing is added: the model is as it was read. “Search for missing effects” above looks for what it lacks.",
+};
 
 function toldOf(stage: TourStage): Told {
   if (!tour.hasLooked) {
@@ -33,13 +44,12 @@ function toldOf(stage: TourStage): Told {
     const words = `${errorWords()} Press “Add” of ${effectTitle(next.effect)}, joint ${next.joint}, which is marked, and watch the error.`;
     return { title: `Guided tour: click ${click} of ${clicks}`, words, before: placeOf("learn"), target: next.id };
   }
-  const came = stage.added > 0 ? `${errorWords()} ` : "The search names nothing to add: it says why above. ";
-  const words = `${came}The steps above have the numbers with their intervals, sliders to feel what each does, and Undo. “Save” below writes the robot file with them; the commands beneath it do the same without this page.`;
+  const words = stage.came === "added" ? `${errorWords()} ${kAddedWords}` : `${kEndWords[stage.came]} ${kLaterWords}`;
   return { title: "Guided tour: what came of it", words, before: placeOf("save"), target: null };
 }
 
 function stageNow(): TourStage {
-  return tour.isSkipped ? { part: "end", added: state().steps.length } : stageOf(session.found, state());
+  return tour.isSkipped ? { part: "end", came: endOf(session.found, state()) } : stageOf(session.found, state());
 }
 
 const title = element("p", { class: "tour-title" });

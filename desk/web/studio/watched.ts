@@ -1,8 +1,9 @@
 import { blockElement } from "../report/blocks";
 import type { Section } from "../report/document";
+import { drawAll } from "../report/drawing";
 import { element } from "../report/element";
 import type { Watched } from "./api";
-import { drawEverything, forgetFigures } from "./charts";
+import { forgetFigures } from "./charts";
 import { choiceOf } from "./choices";
 import { foldWith, noteWith, replaceContent } from "./parts";
 import { placeOf } from "./places";
@@ -64,7 +65,7 @@ function sectionFold({ heading, text, blocks }: Section, index: number) {
     if (text !== "") fold.append(element("p", {}, text));
     fold.append(host);
     watchTables(host);
-    drawEverything();
+    drawAll();
   });
   return fold;
 }

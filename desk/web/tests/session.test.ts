@@ -4,9 +4,11 @@ import type { Joint } from "../studio/api";
 import { steppedBy } from "../studio/drag";
 import { isRobotFile, sizeWords } from "../studio/files";
 import { appendSteps, emptyCurves, liveScale } from "../studio/live_curves";
-import { errorOf, nextConfirm, worstJoint } from "../studio/session";
+import { sizeFrom } from "../studio/live_size";
+import { remarkWords } from "../studio/remarks";
+import { errorOf, nextConfirm, rowNumbers, worstJoint } from "../studio/session";
 import { columnOptions, editOf, signalWords } from "../studio/signals";
-import { laterWords, valueWords } from "../studio/parts";
+import { laterWords, valueWords, withPlainNames } from "../studio/parts";
 import { step } from "./samples";
 
 function joint(number: number, now: number | null, moves = true): Joint {
@@ -42,8 +44,38 @@ test("AnArrowDragsByAHundredthAndNoFurtherThanItGoes", () => {
 
 test("AFittedNumberIsToldWithItsIntervalOrWhyItHasNone", () => {
   assert.equal(valueWords({ value: 20.8, unit: "N", ci95: [19.6, 22] }), "20.8 N, 95 % between 19.6 and 22");
+  assert.equal(valueWords({ value: 5, unit: "N", ci95: [4.99998, 5.00002] }), "5 N, 95 % between 4.99998 and 5.00002");
   const without = { value: 0.5, unit: "1", ci95: null, why_no_ci95: "two of three blocks" };
   assert.equal(valueWords(without), "0.5, no interval: two of three blocks");
+});
+
+test("WhatTheReaderNotedIsToldOfEveryRecording", () => {
+  const told = remarkWords([
+    { name: "runs/a.csv", remarks: ["200 rows were left out", "column time is the time t"] },
+    { name: "b.csv", remarks: [] },
+  ]);
+  assert.deepEqual(told, ["a.csv: 200 rows were left out; column time is the time t"]);
+});
+
+test("AnEmptyOrUnreadableSizeOfAFaultIsNone", () => {
+  const range = { least: -1000, most: 1000, unit: "N m" };
+  assert.equal(sizeFrom("-2.5", range), -2.5);
+  for (const text of ["", " ", "x", "1e999"]) assert.match(String(sizeFrom(text, range)), /no number: it has to be -1000 to 1000 N m/);
+  assert.match(String(sizeFrom("0", range)), /0 is no fault/);
+});
+
+test("TheListOfJointsFollowsANumberThatIsDragged", () => {
+  const now = { start: { fitted_percent: 50, held_out_percent: 60 }, now: { fitted_percent: 5, held_out_percent: 6 } };
+  assert.deepEqual(rowNumbers(now, null), { start: 60, now: 6, words: "" });
+  assert.deepEqual(rowNumbers(now, { fitted_percent: 7, held_out_percent: 8 }), { start: 60, now: 8, words: " dragged" });
+  const fitted = { fitted_percent: 7, held_out_percent: null };
+  assert.deepEqual(rowNumbers(now, fitted), { start: 50, now: 7, words: " dragged, fitted data" });
+});
+
+test("AnEffectIsCalledByItsPlainNameInTheWordsOfTheSearch", () => {
+  const effects = ["coulomb_friction", "backlash"];
+  assert.equal(withPlainNames("joint 1: coulomb_friction is missing, coulomb_frictions not", effects), "joint 1: coulomb friction is missing, coulomb_frictions not");
+  assert.equal(withPlainNames("a_b", []), "a_b");
 });
 
 test("RobotFilesAreKnownByTheirEnding", () => {

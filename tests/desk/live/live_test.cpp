@@ -17,6 +17,7 @@
 #include "desk/sil/serial_robot.hpp"
 #include "desk/support/temporary_folder.hpp"
 #include "exchange/export_robot.hpp"
+#include "live/controller_words.hpp"
 #include "live/live_json.hpp"
 #include "log/read_log.hpp"
 #include "replay/replay.hpp"
@@ -293,13 +294,30 @@ TEST(LiveBench, SaysWhyARunHasEndedAndBeginsItAgain) {
   wait_for(live, [](const Moment& moment) { return moment.is_judging; });
   live.add_fault("encoder_dropout", 1, 0);
   const Moment end = wait_for(live, is_over);
-  EXPECT_THAT(end.ended, HasSubstr("safe state"));
+  EXPECT_THAT(end.ended, HasSubstr("safe state: DriveReported, a drive says that it"));
+  EXPECT_THAT(end.ended, HasSubstr("number 164 of docs/troubleshooting.md"));
+  const auto said = moment_json(end, live).at("controller");
+  EXPECT_EQ(said.at("fault"), "DriveReported");
+  EXPECT_THAT(said.at("fault_words").get<std::string>(), HasSubstr("number 164"));
   EXPECT_EQ(end.controller->state, hal::ControllerState::kFault);
   live.begin_again();
   const Moment again = wait_for(
       live, [](const Moment& moment) { return moment.ended.empty() && moment.is_judging; });
   EXPECT_EQ(again.controller->state, hal::ControllerState::kArmed);
   EXPECT_GT(again.t_s, end.t_s);
+}
+
+TEST(LiveWords, SayOfEveryFaultOfAControllerWhatItMeans) {
+  for (int number = 1; number < 256; ++number) {
+    const auto fault = static_cast<controller::Fault>(number);
+    const std::string words = words_of(fault);
+    EXPECT_THAT(words, HasSubstr("number " + std::to_string(number) + " of"));
+    const std::string name = controller::name_of(fault);
+    const bool is_of_controller = number >= 160 && number < 188 && name != "Unknown";
+    if (is_of_controller) {
+      EXPECT_THAT(words, HasSubstr(" (number")) << name;
+    }
+  }
 }
 
 // GIVEN a scenario with a fault of its own and a controller that slows at it THEN the page is told

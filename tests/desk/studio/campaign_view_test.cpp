@@ -68,6 +68,7 @@ TEST(CampaignView, SaysWhatTheResultsHold) {
     return values;
   };
   EXPECT_EQ(values_of("detector").size(), 5U) << "all, or one of four";
+  EXPECT_THAT(state.dump(), HasSubstr("momentum observer, filter of "));
   EXPECT_THAT(values_of("kind"), ElementsAre("", "offset", "payload"));
   EXPECT_THAT(values_of("joint"), ElementsAre("", "1", "2"));
   EXPECT_THAT(values_of("outcome"), ElementsAre("", "missed", "early"));
@@ -114,7 +115,15 @@ TEST(CampaignView, FiltersFiguresAndRunsByFaultJointAndDetector) {
   EXPECT_EQ(view.runs({}, 3).at("runs").at(0).at("run"), 3);
   const ordered_json missed = view.runs({{"outcome", "missed"}}, 0);
   EXPECT_LT(missed.at("count"), view.runs({}, 0).at("count"));
-  EXPECT_THROW(static_cast<void>(view.figures({{"detector", "no_such"}})), Refused);
+  for (const char* key : {"detector", "kind", "joint", "outcome"}) {
+    try {
+      static_cast<void>(view.runs({{key, "77"}}, 0));
+      ADD_FAILURE() << key << " may be 77";
+    } catch (const Refused& refused) {
+      EXPECT_THAT(refused.what(), HasSubstr(std::string(key) + " is \"77\"; allowed: "));
+    }
+    EXPECT_THROW(static_cast<void>(view.figures({{key, "77"}})), Refused) << key;
+  }
   EXPECT_THROW(static_cast<void>(view.runs({{"outcome", "no_such"}}, 0)), Refused);
   EXPECT_THROW(static_cast<void>(view.runs({{"no_such", "filter"}}, 0)), Refused);
 }

@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "common/refused.hpp"
@@ -17,6 +20,8 @@ using nlohmann::json;
 using offnominal::EffectKind;
 using offnominal::test::studio_input;
 using offnominal::test::TemporaryFolder;
+using ::testing::Contains;
+using ::testing::Not;
 using namespace offnominal::desk;
 using namespace offnominal::desk::studio;
 
@@ -63,6 +68,25 @@ TEST_F(StudioCharts, ColourFittedAndHeldOutApart) {
   EXPECT_EQ(series(held_out, 0, 1).at("tone"), "residual");
 }
 
+// A reader zooms between two samples, and an address may name a time behind the recording's end.
+TEST_F(StudioCharts, OfATimeWithoutASampleMarkNoneInTheClouds) {
+  const auto names = [](const json& chart) {
+    std::vector<std::string> all;
+    for (const json& one : chart.at("series")) all.push_back(one.at("name"));
+    return all;
+  };
+  const View some{.joint = 1, .from_s = 4, .to_s = 6};
+  EXPECT_THAT(names(charts_of(bench_, bench_.now(), some).at(2)),
+              Contains("the time that is shown"));
+  for (const auto& [from_s, to_s] : {std::pair(100., 200.), std::pair(5.0001, 5.0002)}) {
+    const View none{.joint = 1, .from_s = from_s, .to_s = to_s};
+    const json charts = charts_of(bench_, bench_.now(), none);
+    ASSERT_EQ(charts.size(), 4U);
+    EXPECT_THAT(names(charts.at(2)), Not(Contains("the time that is shown")));
+    EXPECT_EQ(series(charts, 2, 0).at("tone"), "faint");
+  }
+}
+
 TEST_F(StudioCharts, FallWithEveryStep) {
   bench_.add(EffectKind::kViscousFriction, 1);
   bench_.add(EffectKind::kCoulombFriction, 1);
@@ -71,11 +95,13 @@ TEST_F(StudioCharts, FallWithEveryStep) {
   ASSERT_EQ(steps.size(), 3U);
   EXPECT_GT(steps.at(0).at("value").get<double>(), steps.at(1).at("value").get<double>());
   EXPECT_GT(steps.at(1).at("value").get<double>(), 3 * steps.at(2).at("value").get<double>());
-  EXPECT_EQ(steps.at(2).at("label"), "2. coulomb_friction, joint 2");
+  EXPECT_EQ(steps.at(2).at("label"), "2. Coulomb friction, joint 2");
 }
 
 TEST_F(StudioCharts, RefuseWhatIsNotThere) {
-  for (const View& view : {View{.joint = 2}, View{.recording = 2}}) {
+  for (const View& view : {View{.joint = 2}, View{.recording = 2}, View{.from_s = 3, .to_s = 2},
+                           View{.from_s = 3, .to_s = 3}, View{.from_s = 3}, View{.to_s = 3},
+                           View{.from_s = std::numeric_limits<double>::quiet_NaN(), .to_s = 3}}) {
     EXPECT_THROW(charts_of(bench_, bench_.now(), view), Refused);
   }
 }

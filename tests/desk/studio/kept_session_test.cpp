@@ -159,6 +159,8 @@ TEST_F(StudioKeptSession, LeavesTheFilesOfOthersAlone) {
   EXPECT_EQ(Session(input()).state().at("steps").at(0).at("effect"), "viscous_friction");
   EXPECT_EQ(Session(input(false)).state().at("steps").at(0).at("effect"), "coulomb_friction");
   EXPECT_TRUE(std::filesystem::exists(file("a.studio_3.json")));
+  EXPECT_EQ(Session(input()).state().at("kept").at("not_taken_up"), "")
+      << "the session is there: somebody's notes beside it are no loss";
 }
 
 TEST_F(StudioKeptSession, TakesUpNothingThatIsDamaged) {
@@ -173,7 +175,12 @@ TEST_F(StudioKeptSession, TakesUpNothingThatIsDamaged) {
     put("a.studio.json", text);
     Session session(input());
     EXPECT_TRUE(session.state().at("steps").empty()) << text;
-    EXPECT_EQ(content_of(file()), text);
+    const ordered_json kept = session.state().at("kept");
+    EXPECT_THAT(kept.at("not_taken_up").get<std::string>(),
+                HasSubstr("a.studio.json is empty, cut off or no session"))
+        << text;
+    EXPECT_EQ(kept.at("file"), file("a.studio_2.json"));
+    EXPECT_EQ(content_of(file()), text) << "whose it is nobody can tell";
   }
 }
 

@@ -103,6 +103,9 @@ TEST_F(LiveServer, TakesChangesOnlyFromItsOwnPage) {
   for (const json& body :
        {json{{"kind", "no_such"}}, json::array(), json{{"kind", "friction_jump"}, {"joint", 9}},
         json{{"kind", "friction_jump"}, {"joint", 1}, {"size", -1}},
+        json{{"kind", "friction_jump"}, {"joint", 1}, {"size", 0}},
+        json{{"kind", "friction_jump"}, {"joint", 1}, {"size", nullptr}},
+        json{{"kind", "friction_jump"}, {"joint", 1}}, json{{"kind", "frame_loss"}},
         json{{"kind", "friction_jump"}, {"joint", "1"}, {"size", 1}}}) {
     EXPECT_EQ(post("live/faults", body).first, 400) << body;
   }
@@ -127,6 +130,12 @@ TEST_F(LiveServer, HandsADetectionToTheAnalysis) {
   EXPECT_TRUE(std::filesystem::exists(answer.at("saved").get<std::string>()));
   EXPECT_TRUE(std::filesystem::exists(answer.at("before").get<std::string>()));
   EXPECT_TRUE(get("live").second.at("loaded").get<bool>());
+  // Another page sees that there is a session, and its own click begins no second one.
+  EXPECT_EQ(there.at("session"), 0);
+  EXPECT_EQ(answer.at("session"), 1);
+  EXPECT_EQ(get("live/now?from=0").second.at("session"), 1);
+  EXPECT_EQ(post("live/explanation", json::object()).second, answer);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "arm_detection_2.csv"));
   const json state = get("state").second;
   EXPECT_EQ(state.at("recordings").at(0).at("name"), answer.at("saved"));
   json explanation;

@@ -15,6 +15,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "desk/studio/api_document.hpp"
 #include "desk/studio/studio_input.hpp"
@@ -132,6 +133,39 @@ TEST_F(StudioServer, RefusesAnotherHostOriginMethodAndTooLongABody) {
       client().Post(at("api/steps"), {{"Origin", own()}}, long_body, "application/json")->status,
       413);
   EXPECT_EQ(client().Post(at("api/steps"), {{"Origin", own()}}, "{}", "text/plain")->status, 400);
+}
+
+// Whoever writes an address by hand hears in words what is wrong with it; nothing is a fault of the
+// program.
+TEST_F(StudioServer, DrawsATimeWithoutASampleAndRefusesOneThatCannotBe) {
+  const std::string shown = "joint=2&recording=1&";
+  for (const char* range : {"from=100&to=200", "from=-20&to=-10", "from=5.0001&to=5.0002"}) {
+    for (const std::string& view :
+         {"charts?pixels=500&" + shown, "map?x=velocity&y=position&" + shown,
+          "spectrum?over=order&" + shown, "spectrum?over=frequency&" + shown,
+          std::string("arm?recording=1&")}) {
+      get(view + range);
+    }
+  }
+  for (const char* range : {"from=3&to=2", "from=3&to=3", "from=3", "to=2", "from=-1e300&to=1e300",
+                            "from=nan&to=1", "from=1&to=1e999"}) {
+    for (const std::string& view :
+         {"charts?pixels=500&" + shown, std::string("arm?recording=1&")}) {
+      const auto answer = client().Get(at("api/" + view + range));
+      ASSERT_TRUE(answer);
+      EXPECT_EQ(answer->status, 400) << view << range << ": " << answer->body;
+    }
+  }
+  json look{{"joint", 2}, {"recording", 1}, {"beside", nullptr}, {"from", 1}, {"to", 2}};
+  EXPECT_EQ(post("look", look).first, 200);
+  for (const auto& [from, to] : {std::pair(json(3), json(2)), std::pair(json(-1e300), json(1e300)),
+                                 std::pair(json(3), json(nullptr))}) {
+    look["from"] = from;
+    look["to"] = to;
+    const auto [status, answer] = post("look", look);
+    EXPECT_EQ(status, 400) << look;
+    EXPECT_THAT(answer.at("error").get<std::string>(), HasSubstr("from"));
+  }
 }
 
 // Of a body in pieces any length would get in so.
