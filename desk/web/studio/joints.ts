@@ -31,8 +31,10 @@ function barWidth(value: number | null) {
 }
 
 function numbersOf({ start, now, words }: RowNumbers) {
-  if (start === now && words === "") return [percent(now)];
-  return [`${percent(start)} → `, element("b", {}, percent(now)), words];
+  // Beside a long name there is no room for both.
+  if (words !== "") return [element("b", {}, percent(now)), words];
+  if (start === now) return [percent(now)];
+  return [`${percent(start)} → `, element("b", {}, percent(now))];
 }
 
 /** The list of joints may stay in sight where the headline does not: it follows a number that is dragged, too. */

@@ -13,8 +13,10 @@ export function liveHeading() {
   return `Live: simulated run of ${robot.name}${plant === null ? "" : `, its plant ${plant}`}`;
 }
 
-function controllerWords({ controller }: Moment) {
+function controllerWords({ controller, ended }: Moment) {
   if (controller === null) return "says nothing of itself on this bus";
+  // Where the run has ended by it, what it means stands there.
+  if (controller.fault !== null && ended !== "") return `${controller.state}: ${controller.fault}`;
   if (controller.fault !== null) return `${controller.state}: ${controller.fault}, ${controller.fault_words}`;
   return controller.slows ? `${controller.state}, its motion slowed` : controller.state;
 }

@@ -73,7 +73,7 @@ export function rowNumbers(joint: Pick<Joint, "start" | "now">, dragged: Errors 
   if (dragged === null) return { start: errorOf(joint, "start"), now: errorOf(joint, "now"), words: "" };
   const { held_out_percent: heldOut, fitted_percent: fitted } = dragged;
   if (heldOut !== null) return { start: joint.start.held_out_percent, now: heldOut, words: " dragged" };
-  return { start: joint.start.fitted_percent, now: fitted, words: " dragged, fitted data" };
+  return { start: joint.start.fitted_percent, now: fitted, words: " dragged, fitted" };
 }
 
 /** What a second "save" agrees to: first that a step is in doubt, then that a file is there. */

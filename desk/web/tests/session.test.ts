@@ -69,7 +69,7 @@ test("TheListOfJointsFollowsANumberThatIsDragged", () => {
   assert.deepEqual(rowNumbers(now, null), { start: 60, now: 6, words: "" });
   assert.deepEqual(rowNumbers(now, { fitted_percent: 7, held_out_percent: 8 }), { start: 60, now: 8, words: " dragged" });
   const fitted = { fitted_percent: 7, held_out_percent: null };
-  assert.deepEqual(rowNumbers(now, fitted), { start: 50, now: 7, words: " dragged, fitted data" });
+  assert.deepEqual(rowNumbers(now, fitted), { start: 50, now: 7, words: " dragged, fitted" });
 });
 
 test("AnEffectIsCalledByItsPlainNameInTheWordsOfTheSearch", () => {
