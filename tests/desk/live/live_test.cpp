@@ -336,10 +336,11 @@ TEST(LiveBench, TellsOfTheScenariosFaultsAndOfASlowedMotion) {
   EXPECT_EQ(planned[0].at("kind"), "friction_jump");
   EXPECT_EQ(planned[0].at("joint"), 2);
   EXPECT_EQ(planned[0].at("begin_s"), 1.0);
-  const Moment slowed =
-      wait_for(live, [](const Moment& now) { return now.controller && now.controller->slows; });
+  // The page's own monitor sees it as the controller's does, a little later.
+  const Moment slowed = wait_for(live, [](const Moment& now) {
+    return now.controller && now.controller->slows && now.detection.has_value();
+  });
   EXPECT_TRUE(moment_json(slowed, live).at("controller").at("slows").get<bool>());
-  EXPECT_TRUE(slowed.detection.has_value()) << "nothing slows a healthy arm";
 }
 
 TEST(LiveBench, RefusesInWordsWhatNoFaultIs) {
