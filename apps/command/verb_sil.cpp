@@ -143,8 +143,9 @@ ExitCode run(const SilOptions& options, const std::string& command_line) {
   sil::make_if_missing(options.bus, made);
   Progress progress;
   progress.begin("running");
-  const sil::SilResult result =
+  sil::SilResult result =
       options.real_time ? real_time(options, robot, scenario) : lock_step(options, robot, scenario);
+  result.is_judged = is_judged;
   progress.end();
   if (!is_judged) {
     std::cerr << *options.robot
@@ -162,13 +163,7 @@ ExitCode run(const SilOptions& options, const std::string& command_line) {
     if (*output) written.push_back(**output);
   }
   print_answer(
-      options.answer,
-      [&] {
-        nlohmann::ordered_json json = to_json(result);
-        json["judged"] = is_judged;
-        return json;
-      },
-      [&] { return text_of(result); }, written);
+      options.answer, [&] { return to_json(result); }, [&] { return text_of(result); }, written);
   return sil::is_unasked_stop(result) ? ExitCode::kCheckFailed : ExitCode::kDone;
 }
 

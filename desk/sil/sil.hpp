@@ -92,6 +92,7 @@ struct SilResult {
   std::optional<NotHeld> not_held;      // of Fault::kArmNotHeld
   controller::AtDetection at_detection = controller::AtDetection::kReport;  // as it was told
   std::optional<Slowed> slowed;
+  bool is_judged = true;  // false: of a robot without a bound, never_judged()
   std::uint64_t overruns = 0;
   std::optional<IsolatedFault> isolated;    // the controller's last answer, on the run's clock
   double run_time_s = 0;                    // of the bus, from the first tick to the last

@@ -186,6 +186,7 @@ ordered_json to_json(const SilResult& result) {
   json["controller_fault"] = controller::name_of(result.fault);
   json["ended_early_s"] = nullable(result.ended_early_s);
   json["unasked_stop"] = is_unasked_stop(result);
+  json["judged"] = result.is_judged;
   json["at_detection"] = offnominal::desk::name_of(result.at_detection);
   json["slowed"] = nullptr;
   if (result.slowed) {
@@ -243,6 +244,8 @@ std::string sentence_of(const SilResult& result) {
   } else if (run.detection_time_s && run.fault_time_s &&
              *run.detection_time_s >= *run.fault_time_s) {
     words = detected_words(result);
+  } else if (!result.is_judged) {
+    words = "Nothing was judged: the robot file has no bound.";
   } else if (run.detection_time_s) {
     words = "There is an alarm while nothing is wrong.";
   } else if (run.fault_time_s) {

@@ -115,9 +115,8 @@ async function checkExplanation(page, folder, fault) {
   if (!title.includes("arm_detection.csv")) fault(`the analysis is of: ${title}`);
   const text = await readFile(join(folder, "arm_detection.csv"), "utf8");
   if (!text.startsWith("t,q1,q2,dq1,dq2,tau1,tau2\n")) fault("the recording is none");
-  const before = await pictures(page);
-  await page.waitForTimeout(500);
-  if ((await pictures(page)) <= before) fault("beside the analysis the live view stands still");
+  const goesOn = page.waitForFunction((before) => Number(document.body.dataset.pictures ?? 0) > before, await pictures(page), { timeout: 20_000 });
+  await goesOn.catch(() => fault("beside the analysis the live view stands still"));
 }
 
 /** A second page over the same run shows the analysis that the first has asked for, and its own click begins no other. */

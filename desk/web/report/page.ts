@@ -2,7 +2,7 @@ import { blockElement } from "./blocks";
 import type { Block, Page, Section } from "./document";
 import { drawAll, redrawAll } from "./drawing";
 import { byId, element, within } from "./element";
-import { watchWidths } from "./tables";
+import { watchTables } from "./tables";
 import { hiddenText, kLevelWords, levelSymbol, paragraphs } from "./words";
 
 /** Charts that zoom together are of one recording. */
@@ -100,5 +100,5 @@ export function buildPage() {
   byId("page").append(headerElement(data), main, footerElement(data));
   if (choice !== null) showRecording(within<HTMLSelectElement>(choice, "select").value);
   drawAll();
-  watchWidths();
+  watchTables(document);
 }

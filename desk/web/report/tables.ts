@@ -5,7 +5,7 @@ import { formatNumber, unitInBrackets } from "./format";
 /** Text that a narrow column does not break: units, single words. */
 const kShortText = 12;
 
-/** The table alone; it scrolls by itself where the window is narrower: see watchWidths(). */
+/** The table alone; it scrolls by itself where the window is narrower: see watchTables(). */
 export function scrollingTable(table: Grid) {
   const text = (index: number) => table.rows.some((row) => typeof row[index] === "string");
   const head = element("tr");
@@ -43,15 +43,25 @@ function tableRow(row: Cell[], columns: Column[]) {
   return line;
 }
 
-/** A table wider than its place says so, and takes the focus so that the arrow keys scroll it. */
-export function watchWidths() {
-  const observer = new ResizeObserver((entries) => {
-    for (const { target } of entries) markWidth(target as HTMLElement);
+let widths: ResizeObserver | undefined;
+
+/**
+ * A table wider than its place says so, and takes the focus so that the arrow keys scroll it. The place changes with the
+ * window, the table with its numbers.
+ */
+export function watchTables(root: ParentNode) {
+  widths ??= new ResizeObserver((entries) => {
+    for (const { target } of entries) {
+      const scroll = target.closest<HTMLElement>(".scroll");
+      if (scroll !== null) markWidth(scroll);
+    }
   });
-  for (const scroll of document.querySelectorAll(".scroll")) observer.observe(scroll);
+  for (const scroll of root.querySelectorAll(".scroll")) {
+    for (const watched of [scroll, ...scroll.children]) widths.observe(watched);
+  }
 }
 
-export function markWidth(scroll: HTMLElement) {
+function markWidth(scroll: HTMLElement) {
   const wide = scroll.scrollWidth > scroll.clientWidth + 1;
   if (wide === scroll.hasAttribute("tabindex")) return;
   const name = `${within(scroll, "caption").textContent}, scrolls sideways`;

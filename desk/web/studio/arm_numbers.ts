@@ -1,11 +1,10 @@
 import type { Grid } from "../report/document";
 import { formatNumber } from "../report/format";
 import { itemAt } from "../report/lists";
-import { scrollingTable } from "../report/tables";
+import { scrollingTable, watchTables } from "../report/tables";
 import type { Marks } from "./arm_tables";
 import { cursor } from "./cursor";
 import { replaceContent } from "./parts";
-import { watchTables } from "./refill";
 import { ask } from "./server";
 
 /** The answers of the server for A and for B; null: none. */

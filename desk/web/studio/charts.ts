@@ -3,11 +3,12 @@ import { drawAll, shareExtents, zoomGroup } from "../report/drawing";
 import { figures, figureWith } from "../report/figure";
 import { chartOf, type Figure } from "../report/figure_type";
 import { itemAt } from "../report/lists";
+import { watchTables } from "../report/tables";
 import { resetZoom, zoomsOf, zoomTo } from "../report/zoom";
 import type { AnswerTo, QueryTo } from "./api";
 import { followChart } from "./cursor";
 import { drawSoon } from "./draw_soon";
-import { refill, watchTables } from "./refill";
+import { refill } from "./refill";
 import type { Looked } from "./session";
 import { rangeOf, type TimeRange } from "./time_range";
 

@@ -2,6 +2,7 @@ import { byId, element, within } from "../report/element";
 import { formatNumber } from "../report/format";
 import { currentLook, darkPreference } from "../report/look";
 import { swatch } from "../report/palette";
+import { watchTables } from "../report/tables";
 import type { LiveSetup, Moment } from "./api";
 import { complainLive, liveActions } from "./live_actions";
 import { accommodationSwitch, benchContent, showInjected } from "./live_bench";
@@ -12,7 +13,6 @@ import { isBench, live, liveSetup } from "./live_state";
 import { boundContent, liveHeading, liveTable, statusContent } from "./live_words";
 import { button, replaceContent, sectionWith } from "./parts";
 import { place, placeOf } from "./places";
-import { watchTables } from "./refill";
 import { ask } from "./server";
 
 /** How often the page asks what is new, and draws it: ms. */

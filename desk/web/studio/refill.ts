@@ -3,15 +3,7 @@ import { byId, element, within } from "../report/element";
 import { numbersElement } from "../report/figure";
 import type { Figure } from "../report/figure_type";
 import { scaleWords } from "../report/heatmap";
-import { markWidth } from "../report/tables";
-
-const tableWidths = new ResizeObserver((entries) => {
-  for (const { target } of entries) markWidth(target as HTMLElement);
-});
-
-export function watchTables(root: HTMLElement) {
-  for (const scroll of root.querySelectorAll(".scroll")) tableWidths.observe(scroll);
-}
+import { watchTables } from "../report/tables";
 
 /** The whole figure around its drawing. */
 function rootOf({ host }: Figure): HTMLElement {

@@ -1,6 +1,7 @@
 import { blockElement } from "../report/blocks";
 import { drawAll } from "../report/drawing";
 import { element } from "../report/element";
+import { watchTables } from "../report/tables";
 import type { Figures, Filter, Results, Run, Runs } from "./api";
 import { forgetFigures } from "./charts";
 import {
@@ -14,7 +15,6 @@ import {
   sectionWith,
 } from "./parts";
 import { place, placeOf } from "./places";
-import { watchTables } from "./refill";
 import { ask, mayConfirm, wordsOf } from "./server";
 import { showWatched } from "./watched";
 

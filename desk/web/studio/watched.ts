@@ -2,12 +2,12 @@ import { blockElement } from "../report/blocks";
 import type { Section } from "../report/document";
 import { drawAll } from "../report/drawing";
 import { element } from "../report/element";
+import { watchTables } from "../report/tables";
 import type { Watched } from "./api";
 import { forgetFigures } from "./charts";
 import { choiceOf } from "./choices";
 import { foldWith, noteWith, replaceContent } from "./parts";
 import { placeOf } from "./places";
-import { watchTables } from "./refill";
 import { ask, wordsOf } from "./server";
 
 /** The sections that the reader has unfolded: another monitor's or run's are too. */

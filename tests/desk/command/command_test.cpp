@@ -199,7 +199,7 @@ TEST(Command, NamesTheVerbAndTheTableThatAreMeant) {
   test::put(folder / "log.csv", "t,q1,q2,tau1,tau2\n0,0,0,0,0\n0.001,0,0,0,0\n0.002,0,0,0,0\n");
   const std::string log = (folder / "log.csv").string();
   const std::vector<std::vector<std::string>> calls{
-      {"sil", "--fault", "none", "--robot", robot},
+      {"sil", "--fault", "none", "--robot", robot, "--real-time"},
       {"paper", "--fault", "none", "--robot", robot},
       {"paper", "--sweep", "--against", robot},
       {"replay", log, "--robot", robot},
@@ -211,6 +211,21 @@ TEST(Command, NamesTheVerbAndTheTableThatAreMeant) {
     EXPECT_THAT(result.err, StartsWith(robot + ": uncertainty_bound: found nothing"));
     EXPECT_THAT(result.err, HasSubstr("a table [uncertainty_bound]"));
   }
+}
+
+// GIVEN a robot file without a bound THEN a run in lock-step is the recording to find one on, and
+// says that nothing was judged.
+TEST(Command, RunsARobotWithoutABoundAndJudgesNothing) {
+  const test::TemporaryFolder folder;
+  std::string text = test::content_of(test::source_dir() / "robots" / "two_link.toml");
+  text.resize(text.find("[uncertainty_bound]"));
+  test::put(folder / "r.toml", text);
+  const std::string robot = (folder / "r.toml").string();
+  const CommandResult result =
+      offnominal({"sil", "--fault", "none", "--duration", "1", "--robot", robot});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.err, StartsWith(robot + ": no [uncertainty_bound]"));
+  EXPECT_THAT(result.out, HasSubstr("Nothing was judged"));
 }
 
 // GIVEN an arm that its controller cannot hold WHEN it runs without a fault THEN that is no run in
