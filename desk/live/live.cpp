@@ -19,21 +19,6 @@ constexpr double kKeptS = kExplainedBeforeS + kExplainedAfterS + 2;  // of sampl
 constexpr std::size_t kPeriodSamples = 201;
 constexpr std::uint32_t kBeginsAfresh = kBorneInARow + 1;  // ticks without a sample
 
-// Where a robot file says none: one that nothing exceeds, of which nothing is shown.
-BoundSettings no_bound(const RobotDescription& robot) {
-  constexpr double kBeyondAll = 1e9;
-  BoundSettings bound;
-  bound.constant.value = kBeyondAll;
-  if (robot.estimator.space == EstimatorSpace::kTorque) {
-    bound.kind = BoundSettings::Kind::kPerJoint;
-    JointBoundSettings of_joint;
-    of_joint.value = {kBeyondAll};
-    bound.joints.assign(robot.joints.size(), of_joint);
-    if (robot.estimator.fast_alpha > 0) bound.fast = bound.joints;
-  }
-  return bound;
-}
-
 std::vector<Judged> judged_of(const RobotDescription& robot) {
   if (robot.estimator.space == EstimatorSpace::kTorque) {
     std::vector<Judged> all;
@@ -63,10 +48,9 @@ Live::Live(LiveInput input, std::unique_ptr<Feed> feed)
       has_two_levels_(has_bound_ && input_.robot.bound->has_two_levels()),
       judged_(judged_of(input_.robot)),
       feed_(std::move(feed)),
-      watched_(input_.robot),
+      watched_(sil::never_judged(input_.robot)),
       history_(input_.robot.joints.size(), judged_.size(), rows_of(input_.robot)),
       strip_(judged_.size()) {
-  if (!has_bound_) watched_.bound = no_bound(watched_);
   names_ = joint_names(input_.robot);
   period_s_ = watched_.estimator.period_s;
   set_up();

@@ -99,8 +99,8 @@ struct SilResult {
   std::optional<RealTimeReport> real_time;  // none for a run in lock-step
 };
 
-/// The same robot, with a bound that nothing comes to where it has none: its runs are recordings to
-/// calibrate on.
+/// The same robot, with a bound that nothing comes to, nor is shown, where it has none: its runs
+/// are recordings to calibrate on.
 [[nodiscard]] RobotDescription never_judged(RobotDescription robot);
 
 /// Refuses, with InputError, a scenario that cannot be run: as paper::check_run() and
