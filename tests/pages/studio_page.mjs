@@ -89,6 +89,9 @@ export async function look(page, looks, name, { screenshots, axeSource }, fault)
     // A busy machine draws anew when it comes to it.
     const fits = () => document.documentElement.scrollWidth <= document.documentElement.clientWidth;
     await page.waitForFunction(fits, undefined, { timeout: 10_000 }).catch(() => undefined);
+    // Tables that scroll are marked in the picture after the one that made them narrow.
+    const marked = () => [...document.querySelectorAll(".scroll")].every((each) => each.scrollWidth <= each.clientWidth + 1 || each.hasAttribute("tabindex"));
+    await page.waitForFunction(marked, undefined, { timeout: 10_000 }).catch(() => undefined);
     const inLook = (words) => fault(`${name}, ${mode}, ${width} pixels wide: ${words}`);
     if (screenshots) await page.screenshot({ path: join(screenshots, `${name}_${mode}_${width}.png`), fullPage: true });
     const wide = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
