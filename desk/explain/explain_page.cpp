@@ -1,13 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "common/effort_name.hpp"
 #include "common/nearest.hpp"
+#include "common/plain_words.hpp"
 #include "compare/error_map.hpp"
 #include "explain/data_fault_report.hpp"
 #include "explain/doubts.hpp"
@@ -24,12 +24,6 @@ using report::numbers;
 
 const JointErrors& joint_of(const Explanation& e, Index joint) {
   return e.joints[static_cast<std::size_t>(joint)];
-}
-
-// As a title begins.
-std::string titled(std::string word) {
-  word.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(word.front())));
-  return word;
 }
 
 const char* position_unit(const JointErrors& joint) { return joint.unit == "N" ? "m" : "rad"; }
@@ -300,7 +294,7 @@ std::vector<report::Series> torque_errors(const Pictured& e, Index joint, const 
 report::Chart torque_chart(const Pictured& e, Index joint) {
   const JointErrors& errors = e.errors(joint);
   report::Chart chart;
-  chart.title = fmt::format("{} of joint {}", titled(effort_name(errors.unit)), joint + 1);
+  chart.title = fmt::format("{} of joint {}", capitalised(effort_name(errors.unit)), joint + 1);
   chart.x = {"time", "s"};
   chart.y = {{effort_name(errors.unit), errors.unit}};
   chart.series = torques(e, joint, e.series.t_s, report::SeriesKind::kLine);
@@ -312,7 +306,8 @@ report::Chart torque_chart(const Pictured& e, Index joint) {
 report::Chart residual_chart(const Pictured& e, Index joint) {
   const JointErrors& errors = e.errors(joint);
   report::Chart chart;
-  chart.title = fmt::format("{} error of joint {}", titled(effort_name(errors.unit)), joint + 1);
+  chart.title =
+      fmt::format("{} error of joint {}", capitalised(effort_name(errors.unit)), joint + 1);
   chart.x = {"time", "s"};
   chart.y = {{"measured less model", errors.unit}};
   chart.series = torque_errors(e, joint, e.series.t_s, report::SeriesKind::kLine);
@@ -348,7 +343,7 @@ report::Chart torque_over_position(const Pictured& e, Index joint) {
   const JointErrors& errors = e.errors(joint);
   report::Chart chart;
   chart.title =
-      fmt::format("{} of joint {} over position", titled(effort_name(errors.unit)), joint + 1);
+      fmt::format("{} of joint {} over position", capitalised(effort_name(errors.unit)), joint + 1);
   chart.x = {"position", position_unit(errors)};
   chart.y = {{effort_name(errors.unit), errors.unit}};
   chart.series = torques(e, joint, e.series.q.col(joint), report::SeriesKind::kPoints);

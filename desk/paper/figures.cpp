@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <utility>
 
+#include "common/plain_words.hpp"
 #include "report/act_level.hpp"
 
 namespace offnominal::desk::paper {
@@ -21,8 +21,7 @@ const std::string kZoomGroup = "time";
 // A chart that is no figure of the paper has number 0.
 std::string titled(int number, std::string title) {
   if (number > 0) return fmt::format("Figure {}: {}", number, title);
-  title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
-  return title;
+  return capitalised(std::move(title));
 }
 
 std::vector<report::EventMark> events_of(const ExperimentResult& run) {

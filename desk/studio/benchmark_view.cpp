@@ -13,6 +13,7 @@
 #include "campaign/summary.hpp"
 #include "common/error.hpp"
 #include "common/input_name.hpp"
+#include "common/plain_words.hpp"
 #include "common/refused.hpp"
 #include "report/page.hpp"
 
@@ -58,7 +59,7 @@ ordered_json outcome_cell(const Case& one) {
   std::vector<std::string> missed;
   for (const Asked& asked : one.asked) {
     if (asked.outcome == Outcome::kMissed) {
-      missed.push_back(fmt::format("{}, joint {}", spaced(asked.effect), asked.joint));
+      missed.push_back(fmt::format("{}, joint {}", in_words(asked.effect), asked.joint));
     }
   }
   if (missed.empty()) return cell_json(one.asked.empty() ? "nothing named" : "right");
@@ -214,7 +215,7 @@ ordered_json BenchmarkView::state() const {
   std::vector<FilterOption> of_groups{{"", "all cases"}};
   for (const std::string& one : groups) of_groups.push_back({one, one});
   std::vector<FilterOption> of_effects{{"", "all effects"}};
-  for (const std::string& one : effects) of_effects.push_back({one, spaced(one)});
+  for (const std::string& one : effects) of_effects.push_back({one, in_words(one)});
   std::vector<FilterOption> of_joints{{"", "every joint"}};
   for (const int one : joints) of_joints.push_back({std::to_string(one), std::to_string(one)});
   std::vector<FilterOption> outcomes{{"", "all cases"}};
@@ -263,7 +264,7 @@ nlohmann::json BenchmarkView::figures(const ResultsFilter& filter) const {
     for (const Asked& of : one->asked) {
       if (!is_of(of, filter)) continue;
       asked.push_back(&of);
-      by_effect[spaced(of.effect)].take(of);
+      by_effect[in_words(of.effect)].take(of);
       by_group[one->group].take(of);
       whole.take(of);
     }

@@ -15,6 +15,7 @@
 #include "campaign/summary_report.hpp"
 #include "common/error.hpp"
 #include "common/input_name.hpp"
+#include "common/plain_words.hpp"
 #include "common/shell_word.hpp"
 #include "log/csv_text.hpp"
 #include "replay/replay.hpp"
@@ -93,7 +94,7 @@ std::string detector_words(const std::string& name) {
   const bool is_kind =
       std::any_of(kinds.begin(), kinds.end(), [&](const char* one) { return kind == one; });
   const bool is_number = filter.find_first_not_of("0123456789.e-+") == std::string::npos;
-  return is_kind && is_number ? fmt::format("{}, filter of {} 1/s", spaced(kind), filter) : name;
+  return is_kind && is_number ? fmt::format("{}, filter of {} 1/s", in_words(kind), filter) : name;
 }
 
 // "run_12", and after it what makes both files of a run's names free here.
@@ -134,7 +135,7 @@ ordered_json CampaignView::state() const {
     if (row.kind == kFaultFree) continue;
     const bool is_new = std::none_of(
         kinds.begin(), kinds.end(), [&](const FilterOption& one) { return one.value == row.kind; });
-    if (is_new) kinds.push_back({row.kind, spaced(row.kind)});
+    if (is_new) kinds.push_back({row.kind, in_words(row.kind)});
     if (row.joint) of_joints.insert(*row.joint);
   }
   std::vector<FilterOption> joints{{"", "every joint or link"}};

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "common/effort_name.hpp"
+#include "common/plain_words.hpp"
 #include "common/refused.hpp"
 #include "compare/torque_charts.hpp"
 #include "report/decimate.hpp"
@@ -218,17 +218,7 @@ Shown shown_of(const Comparison& recording, const View& view) {
   return {first - t_s.begin(), end - first};
 }
 
-std::string in_words(std::string name) {
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
-}
-
-std::string effect_title(const char* name) {
-  std::string words = in_words(name);
-  if (!words.empty())
-    words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
-  return words;
-}
+std::string effect_title(const char* name) { return capitalised(in_words(name)); }
 
 Series points_of(const std::string& name, Tone tone, const VectorXd& x, const VectorXd& y) {
   Series series;

@@ -58,10 +58,7 @@ struct Shown {
 };
 [[nodiscard]] Shown shown_of(const Comparison& recording, const View& view);
 
-/// "coulomb friction" of "coulomb_friction".
-[[nodiscard]] std::string in_words(std::string name);
-
-/// "Coulomb friction" of it: as the page calls an effect.
+/// "Coulomb friction" of "coulomb_friction": as the page calls an effect.
 [[nodiscard]] std::string effect_title(const char* name);
 
 /// A cloud of points.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/effort_name.hpp"
+#include "common/plain_words.hpp"
 #include "common/refused.hpp"
 #include "compare/error_map.hpp"
 #include "compare/error_spectrum.hpp"

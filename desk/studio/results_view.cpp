@@ -39,11 +39,6 @@ std::string shortened(const std::string& value) {
 
 }  // namespace
 
-std::string spaced(std::string name) {
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
-}
-
 void refuse_filter(const std::string& words) { throw Refused(Refused::Why::kBadRequest, words); }
 
 void check_filters(const ResultsFilter& filter, const ordered_json& known) {

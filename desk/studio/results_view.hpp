@@ -53,9 +53,6 @@ struct FilterOption {
 [[nodiscard]] nlohmann::ordered_json cell_json(const std::string& words,
                                                const std::string& level = "");
 
-/// "torque_lost" as "torque lost".
-[[nodiscard]] std::string spaced(std::string name);
-
 /// Throws Refused: what a filter asks for is not there.
 [[noreturn]] void refuse_filter(const std::string& words);
 /// Throws Refused where a filter is none of these (filter_json), or its value none of its options.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string>
 
+#include "common/plain_words.hpp"
 #include "explain/data_fault.hpp"
 
 namespace offnominal::desk::studio {

@@ -60,17 +60,15 @@ Intake& Stage::intake() const {
 nlohmann::ordered_json Stage::explain_detection() {
   const std::lock_guard guard(making_);
   const std::uint64_t detection = live().detection_number();
-  if (detection == 0 || detection != explained_) {
+  if (detection == 0 || detection != explained_.detection) {
     live::Live::Written written = live().write_detection();
     auto made = std::make_shared<Session>(open_(written.since));
     static_cast<void>(made->start_to_explain());
     show(std::move(made));
-    explained_ = written.detection;
-    explained_as_ = std::move(written);
+    explained_ = std::move(written);
   }
-  return {{"saved", explained_as_.since},
-          {"before", explained_as_.before},
-          {"session", session_number()}};
+  return {
+      {"saved", explained_.since}, {"before", explained_.before}, {"session", session_number()}};
 }
 
 nlohmann::ordered_json Stage::use_files(bool replace) {

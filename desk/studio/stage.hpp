@@ -67,10 +67,9 @@ class Stage {
 
   OpenRecording open_;
   OpenFiles open_files_;
-  std::mutex making_;                 // one session after the other
-  std::uint64_t explained_ = 0;       // the number of the detection that the session is over
-  live::Live::Written explained_as_;  // and its files
-  mutable std::mutex lock_;           // of the session that is shown
+  std::mutex making_;              // one session after the other
+  live::Live::Written explained_;  // the detection that the session is over; number 0: none
+  mutable std::mutex lock_;        // of the session that is shown
   std::shared_ptr<Session> session_;
   std::size_t shown_ = 0;  // sessions, up to this one
   std::unique_ptr<Intake> intake_;
