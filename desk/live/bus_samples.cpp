@@ -30,9 +30,10 @@ BusSamples::BusSamples(const RobotDescription& robot)
       protocol_(protocol_of(robot.drive_settings())),
       readings_(robot.drive_settings(), joints_, {period_us_, hal::FrameFormat::kClassic}),
       taker_(taker_of(robot)) {
-  size_for(joints_, data_.implausible_time_us, data_.used_time_us, data_.velocity, data_.turns);
+  size_for(joints_, data_.implausible_time_us, data_.used_time_us, data_.motion, data_.turns);
   size_for(joints_, data_.sample.q, data_.sample.dq, data_.sample.tau);
-  size_for(joints_, sample_.sample.q, sample_.sample.dq, sample_.sample.tau);
+  size_for(joints_, data_.observed.q, data_.observed.dq, data_.observed.tau);
+  size_for(joints_, sample_.sample.joints.q, sample_.sample.joints.dq, sample_.sample.joints.tau);
 }
 
 const BusSample* BusSamples::take(const hal::ReceivedFrame& received) {
@@ -66,7 +67,7 @@ bool BusSamples::hand_over(const Taker::Feedback& readings) {
   data_.unseen_ticks = 0;
   last_us_ = time_us;
   if (!taker_.is_settled(data_)) return false;
-  sample_.sample = data_.sample;
+  sample_.sample = {data_.judged(), data_.sample.q};
   sample_.time_us = time_us;
   sample_.missing = missing;
   sample_.driven = std::all_of(readings.begin(), readings.end(), [](const auto& joint) {

@@ -217,7 +217,7 @@ void Live::keep(const BusSample& sample, double t_s, const Watched& said) {
   const auto span = [](const auto& vector) {
     return std::span<const double>(vector.data(), static_cast<std::size_t>(vector.size()));
   };
-  const Watch::Sample& at = sample.sample;
+  const auto& at = sample.sample.joints;
   const Levels levels{residual_, threshold_, act_};
   history_.push(t_s, span(at.q), span(at.dq), span(at.tau), levels);
   strip_.push(t_s, levels);

@@ -44,6 +44,9 @@ struct Log {
   Eigen::VectorXd t_s;  // as recorded, or the even grid it was resampled to
   Eigen::MatrixXd q;    // rows: samples, columns: joints; rad or m
   Eigen::MatrixXd dq;   // rad/s or m/s
+  // Positions as the encoders say them at that time, where q is that of an earlier one
+  // (observed_motion.hpp); else empty. As q.
+  Eigen::MatrixXd readings;
   // Torque of the drive, at the joint; or what a sensor behind the gear says, where that is all
   // there is of a joint (of_sensor()). N m or N.
   Eigen::MatrixXd tau;

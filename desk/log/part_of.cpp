@@ -16,6 +16,7 @@ Log part_of(const Log& log, const RowSpan& samples) {
   part.q = log.q.middleRows(first, count);
   part.dq = log.dq.middleRows(first, count);
   part.tau = log.tau.middleRows(first, count);
+  if (log.readings.rows() > 0) part.readings = log.readings.middleRows(first, count);
   if (log.sensor_tau.rows() > 0) part.sensor_tau = log.sensor_tau.middleRows(first, count);
   part.dq_derived = log.dq_derived;
   for (const auto& [name, values] : log.extra) part.extra[name] = values.segment(first, count);

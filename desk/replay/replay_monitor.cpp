@@ -182,8 +182,9 @@ void replay_monitor(const RobotDescription& robot, const Log& log, const OnShare
     if (on_share && i % kToldEvery == 0) {
       on_share(static_cast<double>(i) / static_cast<double>(log.sample_count()));
     }
-    const Watch::Sample sample{log.q.row(i).transpose(), log.dq.row(i).transpose(),
-                               log.tau.row(i).transpose()};
+    Watch::Sample sample{
+        {log.q.row(i).transpose(), log.dq.row(i).transpose(), log.tau.row(i).transpose()}, {}};
+    if (log.readings.rows() > 0) sample.readings = log.readings.row(i).transpose();
     const Status status = watch->take(sample, log.t_s[i], 0);
     if (status == Status::kOk) {
       collector.accept(log.t_s[i], watch->said());

@@ -41,6 +41,7 @@ class FaultNamer {
   void begin_afresh() {}
   template <typename Monitored>
   void take(const Monitored& /*monitor*/, const typename Monitored::State& /*state*/,
+            const Vector<kRuntimeJoints, double>& /*readings*/,
             typename Monitored::Output& /*output*/, double /*t_s*/) {}
   void finish() {}
   [[nodiscard]] static std::optional<IsolatedFault> answer() { return std::nullopt; }
@@ -64,11 +65,14 @@ class FaultNamer<TorqueSpace> {
   // The compensation is then the named fault's own, as on a controller.
   template <typename Monitored>
   void take(const Monitored& monitor, const typename Monitored::State& state,
-            typename Monitored::Output& output, double t_s) {
+            const Vector<kRuntimeJoints, double>& readings, typename Monitored::Output& output,
+            double t_s) {
     const bool is_new =
         !state_->triggered || state_->detection_tick != output.detector.detection_tick;
     if (is_new && output.detector.latched) detection_s_ = t_s;
-    isolation_.step(monitor.model(), state.sample, state.tick, output, *state_);
+    const auto& sample = state.sample;
+    isolation_.step(monitor.model(), sample, readings.size() > 0 ? readings : sample.q,
+                    joint_transforms(monitor.model(), sample.q), state.tick, output, *state_);
     const FaultLaw<kRuntimeJoints, double>& law = state_->law;
     if (law.known) output.compensation = monitor.compensation_of(law.load, output);
     if (state_->diagnosis.time_s != answer_at_) answer_s_ = t_s;
@@ -129,7 +133,8 @@ class WatchOf final : public Watch {
     require_start(Monitored::create(config_, monitor_), robot);
   }
 
-  Status take(const Sample& sample, double t_s, std::uint32_t missing) override {
+  Status take(const Sample& now, double t_s, std::uint32_t missing) override {
+    const JointSample<kRuntimeJoints, double>& sample = now.joints;
     missed_ += missing;
     ticks_ += missing;
     const std::uint64_t tick = ticks_++;
@@ -154,7 +159,7 @@ class WatchOf final : public Watch {
       namer_.begin_afresh();
       quiet_ticks_ = 0;
     } else if (missed_ == 0) {
-      namer_.take(monitor_, *state_, output_, t_s);
+      namer_.take(monitor_, *state_, now.readings, output_, t_s);
       if constexpr (std::is_same_v<Space, TorqueSpace>) {
         if (detections_ == Detections::kEach) arm_again();
       }
@@ -199,7 +204,7 @@ class WatchOf final : public Watch {
   // on: `tick` is what the samples have come to. And a threshold that was there stays: one that
   // begins at nothing is that of the bound at an instant, which a healthy robot may exceed for as
   // long as the filter forgives it (docs/theory.md, erratum 6).
-  Status begin_afresh(const Sample& sample, std::uint64_t tick) {
+  Status begin_afresh(const JointSample<kRuntimeJoints, double>& sample, std::uint64_t tick) {
     const bool had_begun = state_->initialised;
     Thresholds threshold = thresholds_of(*state_);
     Status status = monitor_.reset(sample, *state_);

@@ -52,7 +52,12 @@ struct Watched {
 
 class Watch {
  public:
-  using Sample = JointSample<kRuntimeJoints, double>;
+  struct Sample {
+    JointSample<kRuntimeJoints, double> joints;
+    // Positions as the encoders say them now, where the sample's are late (observed_motion.hpp);
+    // else empty.
+    Vector<kRuntimeJoints, double> readings;
+  };
   // Told each answer of isolation when no more is to come of it: the monitor begins afresh, takes
   // its detection back, or ends.
   using OnFault = std::function<void(const IsolatedFault& fault)>;

@@ -163,11 +163,11 @@ TEST(ControllerSamples, VelocitiesAreObservedAnewAfterAFault) {
   arm.run(100);
   EXPECT_EQ(arm.try_to_arm(), Fault::kNone);
   arm.stop(Fault::kEmergencyStop);
-  for (const auto& observer : arm.data->velocity) EXPECT_EQ(observer.updates, 0U);
+  for (const auto& observer : arm.data->motion) EXPECT_EQ(observer.observer.updates, 0U);
   arm.run(100);
-  for (const auto& observer : arm.data->velocity) EXPECT_EQ(observer.updates, 100U);
+  for (const auto& observer : arm.data->motion) EXPECT_EQ(observer.observer.updates, 100U);
   ASSERT_TRUE(arm.clear_fault());
-  for (const auto& observer : arm.data->velocity) EXPECT_EQ(observer.updates, 0U);
+  for (const auto& observer : arm.data->motion) EXPECT_EQ(observer.observer.updates, 0U);
   arm.tick();
   EXPECT_EQ(arm.try_to_arm(), Fault::kVelocityUnsettled);
 }

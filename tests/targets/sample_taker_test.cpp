@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <offnominal/controller/sample_taker.hpp>
@@ -134,7 +135,12 @@ TEST(SampleTaker, IsSettledWhereEveryJointIs) {
   EXPECT_TRUE(joints.is_settled());
   joints.feedback[1].reading.has_velocity = false;
   joints.read(0, 0);
-  EXPECT_FALSE(joints.is_settled()) << "the first one knows it by now";
+  EXPECT_TRUE(joints.is_settled()) << "the second one was observed beside the first";
+  for (hal::JointFeedback& joint : joints.feedback) joint.reading.has_velocity = true;
+  joints.read(0, 0);
+  joints.feedback[1].reading.has_velocity = false;
+  joints.read(0, 0);
+  EXPECT_FALSE(joints.is_settled()) << "nothing was observed meanwhile";
 }
 
 // GIVEN a velocity that was observed WHEN one is sent meanwhile THEN what was observed before it is
@@ -148,11 +154,56 @@ TEST(SampleTaker, ObservesAnewAfterAVelocityThatWasSent) {
   joints.feedback[1].reading.velocity = -3;
   joints.read(0, 0.2);
   EXPECT_EQ(joints.data.sample.dq[1], -3);
-  EXPECT_EQ(joints.data.velocity[1].updates, 0U);
+  EXPECT_EQ(joints.data.motion[1].observer.updates, 0U);
   joints.feedback[1].reading.has_velocity = false;
   joints.read(0, 0.2);
   EXPECT_EQ(joints.data.sample.dq[1], 0);
-  EXPECT_EQ(joints.data.velocity[1].updates, 1U);
+  EXPECT_EQ(joints.data.motion[1].observer.updates, 1U);
+}
+
+// GIVEN two joints of which one sends no velocity WHEN they accelerate THEN what is judged is of
+// one time for both, and what controls is what came last.
+TEST(SampleTaker, JudgesAllJointsAtOneTimeWhereOneSendsNoVelocity) {
+  constexpr double kAcceleration = 4;
+  TwoJoints joints;
+  joints.feedback[1].reading.has_velocity = false;
+  double time_s = 0;
+  for (int i = 0; i < 1000; ++i) {
+    time_s = 0.001 * i;
+    const double q = kAcceleration * time_s * time_s / 2;
+    joints.feedback[0].reading.velocity = static_cast<float>(kAcceleration * time_s);
+    for (hal::JointFeedback& joint : joints.feedback) {
+      joint.status.applied_torque = static_cast<float>(10 * time_s);
+    }
+    joints.read(q, q);
+  }
+  const auto& judged = joints.data.judged();
+  EXPECT_EQ(&judged, &joints.data.observed);
+  const double late_s = 0.5 * 0.001 + 2 * std::exp(-0.2) / (1 - std::exp(-0.2)) * 0.001;
+  for (Eigen::Index j = 0; j < 2; ++j) {
+    EXPECT_NEAR(judged.dq[j], kAcceleration * (time_s - late_s), 1e-3);
+    EXPECT_NEAR(judged.tau[j], 10 * (time_s - late_s), 1e-4);
+    EXPECT_NEAR(judged.q[j], kAcceleration * (time_s - late_s) * (time_s - late_s) / 2, 2e-4);
+    EXPECT_NEAR(joints.data.sample.tau[j], 10 * time_s, 1e-5);
+    EXPECT_NEAR(joints.data.sample.q[j], kAcceleration * time_s * time_s / 2, 1e-6);
+  }
+  EXPECT_NEAR(joints.data.sample.dq[0], kAcceleration * time_s, 1e-6) << "as it was sent";
+  joints.feedback[1].reading.has_velocity = true;
+  joints.read(2, 2);
+  EXPECT_EQ(&joints.data.judged(), &joints.data.sample);
+}
+
+TEST(SampleTaker, TakesTheTorqueThatBeginsForWhatWasThereForLong) {
+  TwoJoints joints;
+  joints.feedback[0].reading.has_velocity = false;
+  for (int i = 0; i < 100; ++i) joints.read(0, 0);
+  TwoJoints::Taker::begin_torque(0, 7.0, joints.data);
+  EXPECT_EQ(joints.data.sample.tau[0], 7);
+  EXPECT_EQ(joints.data.judged().tau[0], 7);
+  joints.feedback[0].status.applied_torque = 7;
+  joints.read(0, 0);
+  EXPECT_EQ(joints.data.judged().tau[0], 7);
+  EXPECT_EQ(joints.data.judged().tau[1], 0);
 }
 
 // In float: a position that can be, and a velocity that is beyond the largest number.
@@ -172,8 +223,8 @@ TEST(SampleTaker, ObservesAnewFromWhatTheObserverCannotFollow) {
     ASSERT_TRUE(data.fresh);
   }
   EXPECT_EQ(data.sample.dq[0], 0.0F);
-  EXPECT_EQ(data.velocity[0].updates, 1U);
-  EXPECT_EQ(data.velocity[0].position, 2e38F);
+  EXPECT_EQ(data.motion[0].observer.updates, 1U);
+  EXPECT_EQ(data.motion[0].observer.position, 2e38F);
 }
 
 }  // namespace

@@ -23,7 +23,8 @@ Scenario scenario_of(const RobotDescription& robot) {
 
 struct Heard {
   std::vector<BusSample> samples;
-  std::vector<Watch::Sample> controllers;  // what the controller had, tick by tick
+  std::vector<JointSample<kRuntimeJoints, double>>
+      controllers;  // what the controller had, tick by tick
   std::optional<hal::Heartbeat> heartbeat;
 };
 
@@ -65,10 +66,11 @@ TEST_P(Listener, HasEverySampleAsTheControllerHadIt) {
   std::size_t at = heard.controllers.size() - 1;
   for (std::size_t i = heard.samples.size(); i-- > heard.samples.size() - 400;) {
     --at;
-    const Watch::Sample& sample = heard.samples[i].sample;
+    const JointSample<kRuntimeJoints, double>& sample = heard.samples[i].sample.joints;
     EXPECT_EQ(heard.samples[i].missing, 0U);
     ASSERT_TRUE(sample.q.isApprox(heard.controllers[at].q, 1e-6)) << i;
     ASSERT_TRUE(sample.tau.isApprox(heard.controllers[at].tau, 1e-6)) << i;
+    ASSERT_EQ(heard.samples[i].sample.readings, sample.q);
   }
   EXPECT_TRUE(heard.samples.back().driven);
 }

@@ -73,18 +73,20 @@ class Isolation {
   // answer stands in state.diagnosis; it is one where its time is above 0.
   void step(const RigidBodyModel<N, Scalar>& model, const Sample& sample, std::uint64_t tick,
             const Output& output, State& state) const {
-    step(model, sample, joint_transforms(model, sample.q), tick, output, state);
+    step(model, sample, sample.q, joint_transforms(model, sample.q), tick, output, state);
   }
-  // `transforms`: of the sample's positions.
+  // `readings`: positions as the encoders say them now, rad or m, where the sample's own are late
+  // (observed_motion.hpp): an encoder that sticks or jumps does so at once. `transforms`: of the
+  // sample's positions.
   void step(const RigidBodyModel<N, Scalar>& model, const Sample& sample,
-            const JointTransforms<N, Scalar>& transforms, std::uint64_t tick, const Output& output,
-            State& state) const {
+            const Vector<N, Scalar>& readings, const JointTransforms<N, Scalar>& transforms,
+            std::uint64_t tick, const Output& output, State& state) const {
     const std::uint64_t ticks = state.started ? tick - state.tick : 1;
     const bool gap = !state.started || ticks != 1;
     state.tick = tick;
     state.started = true;
     constexpr std::uint32_t kMost = ~std::uint32_t{0};
-    watch_encoders(sample, ticks < kMost ? static_cast<std::uint32_t>(ticks) : kMost, state);
+    watch_encoders(readings, ticks < kMost ? static_cast<std::uint32_t>(ticks) : kMost, state);
     const IsolationInstant<N, Scalar> at =
         isolation_instant<N, Scalar>(model, sample, transforms, output, scales_.friction);
     bool ended = false;
@@ -134,10 +136,10 @@ class Isolation {
   }
 
  private:
-  static void watch_encoders(const Sample& sample, std::uint32_t ticks, State& state) {
+  static void watch_encoders(const Vector<N, Scalar>& readings, std::uint32_t ticks, State& state) {
     std::size_t moving = 0;
     for (std::size_t i = 0; i < state.encoders.size(); ++i) {
-      look_at(state.encoders[i], sample.q[static_cast<Eigen::Index>(i)], ticks);
+      look_at(state.encoders[i], readings[static_cast<Eigen::Index>(i)], ticks);
       if (state.encoders[i].fast_for > 0) ++moving;
     }
     for (EncoderWatch<Scalar>& watch : state.encoders) {

@@ -26,6 +26,13 @@ struct VelocityObserverState {
   Scalar velocity{};          // rad/s or m/s
 };
 
+// With poles at a fifth of the sampling rate: it has forgotten its start within some fifty ticks,
+// and goes on behind five that had no position.
+template <typename Scalar>
+[[nodiscard]] VelocityObserverConfig<Scalar> velocity_observer_config(Scalar period_s) {
+  return {Scalar(0.2) / period_s, period_s};
+}
+
 // kInvalidPeriod, or kInvalidFilterPole where the loop would be slower than it samples: bandwidth
 // times period has to stay below 0.5.
 template <typename Scalar>

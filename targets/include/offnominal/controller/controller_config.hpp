@@ -75,8 +75,7 @@ template <int N, typename Scalar, typename Space>
   config.arming = arming;
   const Scalar period_s = monitor.estimator.period_s;
   config.command_lifetime_us = static_cast<Microseconds>(Scalar(0.9e6) * period_s + Scalar(0.5));
-  config.velocity_observer.period_s = period_s;
-  config.velocity_observer.bandwidth_rad_s = Scalar(0.2) / period_s;
+  config.velocity_observer = velocity_observer_config(period_s);
   return config;
 }
 

@@ -183,7 +183,8 @@ class JointController {
   // Before the first tick, where the compiler does not know how many joints there are.
   void size_data(Data& data) const {
     size_for(joints(), data.sample.q, data.sample.dq, data.sample.tau, data.implausible_time_us,
-             data.used_time_us, data.velocity, data.turns, data.commands);
+             data.used_time_us, data.motion, data.turns, data.commands, data.observed.q,
+             data.observed.dq, data.observed.tau);
     takeover_.reset(data);
     forget_output(data);
   }
@@ -297,7 +298,7 @@ class JointController {
     const bool armed = data.state == ControllerState::kArmed;
     const bool passive = data.state == ControllerState::kPassive && config_.watch_when_passive;
     if (!armed && !passive) return;
-    joint_transforms(monitor_.model(), data.sample.q, data.transforms);
+    joint_transforms(monitor_.model(), data.judged().q, data.transforms);
     if (!samples_.is_settled(data)) {
       data.monitor.initialised = false;
       if (armed) enter_fault(Fault::kVelocityUnknown, bus, data);
@@ -309,7 +310,7 @@ class JointController {
     const bool follows = data.monitor.initialised && data.unseen_ticks == 0;
     const bool has_acted = data.output.detector.acts;
     const Fault fault =
-        follows ? fault_of(monitor_.step(data.sample, data.transforms, data.monitor, data.output))
+        follows ? fault_of(monitor_.step(data.judged(), data.transforms, data.monitor, data.output))
                 : begin_watch(reference_at, armed, data);
     if (follows && fault == Fault::kNone) isolate(data);
     if (fault != Fault::kNone) {
@@ -336,8 +337,8 @@ class JointController {
   [[gnu::noinline]] void isolate(Data& data) const {
     if constexpr (kIsolates) {
       if (!config_.isolates) return;
-      isolation_.step(monitor_.model(), data.sample, data.transforms, data.monitor.tick,
-                      data.output, data.isolation);
+      isolation_.step(monitor_.model(), data.judged(), data.sample.q, data.transforms,
+                      data.monitor.tick, data.output, data.isolation);
       const auto& law = data.isolation.law;
       if (law.known) data.output.compensation = monitor_.compensation_of(law.load, data.output);
     }
@@ -358,7 +359,7 @@ class JointController {
                                                  Data& data) const {
     if (data.monitor.initialised) {
       return fault_of(
-          monitor_.resume(data.sample, data.transforms, data.unseen_ticks, data.monitor));
+          monitor_.resume(data.judged(), data.transforms, data.unseen_ticks, data.monitor));
     }
     forget_output(data);
     if constexpr (Watch::kRemembers) {
@@ -369,8 +370,9 @@ class JointController {
     if (armed) {
       const Fault fault = begin_control(reference_at, data);
       if (fault != Fault::kNone) return fault;
+      if (data.observes) joint_transforms(monitor_.model(), data.judged().q, data.transforms);
     }
-    return fault_of(monitor_.reset(data.sample, data.transforms, data.monitor));
+    return fault_of(monitor_.reset(data.judged(), data.transforms, data.monitor));
   }
 
   [[nodiscard]] Fault check_beginning(const Reference<N, Scalar>& reference,
@@ -390,13 +392,11 @@ class JointController {
     if (fault != Fault::kNone) return fault;
     Vector<N, Scalar> wanted = zeros<N, Scalar>(static_cast<Eigen::Index>(joints()));
     const Fault refusal = want_torque(reference_at, data, wanted);
-    if constexpr (Watch::kRemembers) {
-      for (std::size_t j = 0; j < joints(); ++j) {
+    for (std::size_t j = 0; j < joints(); ++j) {
+      if constexpr (Watch::kRemembers) {
         if (delay_of_joint(chain(), j) > 0) continue;
-        data.sample.tau[static_cast<Eigen::Index>(j)] = wanted[static_cast<Eigen::Index>(j)];
       }
-    } else {
-      data.sample.tau = wanted;
+      samples_.begin_torque(j, wanted[static_cast<Eigen::Index>(j)], data);
     }
     return refusal;
   }
@@ -418,6 +418,8 @@ class JointController {
     } else {
       reference = takeover_.held(data);
     }
+    // Those of what is judged are of an arm a little earlier.
+    if (data.observes) joint_transforms(monitor_.model(), data.sample.q, data.transforms);
     tau = computed_torque<N, Scalar>(monitor_.model(), data.transforms, config_.gains, reference,
                                      data.sample.q, data.sample.dq, time_s);
     if (compensates(data)) tau += data.output.compensation.torque;

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <offnominal/controller/controller_config.hpp>
-#include <offnominal/diagnosis/velocity_observer.hpp>
+#include <offnominal/diagnosis/observed_motion.hpp>
 #include <offnominal/finite.hpp>
 #include <offnominal/hal/drive_protocol.hpp>
 #include <offnominal/sample.hpp>
@@ -27,16 +27,23 @@ struct TurnCount {
 // Plain data.
 template <int N, typename Scalar>
 struct SampleData {
-  JointSample<N, Scalar> sample;
-  bool fresh = false;              // this tick had a sample of its own
-  std::uint32_t unseen_ticks = 0;  // periods without one, since the last
+  JointSample<N, Scalar> sample;    // the newest of everything: what controls
+  JointSample<N, Scalar> observed;  // of one time, while `observes`
+  bool observes = false;            // a joint of this sample had no velocity
+  bool fresh = false;               // this tick had a sample of its own
+  std::uint32_t unseen_ticks = 0;   // periods without one, since the last
   // Readings of a position that cannot be, of one joint or of several in a tick; of the last, why.
   std::uint8_t implausible_in_a_row = 0;
   Status implausible = Status::kOk;
   PerJoint<N, Microseconds> implausible_time_us{};
   PerJoint<N, Microseconds> used_time_us{};  // of the last sample
-  PerJoint<N, VelocityObserverState<Scalar>> velocity{};
+  PerJoint<N, ObservedMotionState<Scalar>> motion{};
   PerJoint<N, TurnCount<Scalar>> turns{};
+
+  // What is judged: position, velocity and torque of one time.
+  [[nodiscard]] const JointSample<N, Scalar>& judged() const {
+    return observes ? observed : sample;
+  }
 };
 
 template <int N, typename Scalar>
@@ -102,27 +109,41 @@ class SampleTaker {
       if (data.unseen_ticks < std::numeric_limits<std::uint32_t>::max()) ++data.unseen_ticks;
       return;
     }
+    // One joint alone without a velocity makes all late: they carry each other.
+    data.observes = std::any_of(feedback.begin(), feedback.end(),
+                                [](const auto& joint) { return !joint.reading.has_velocity; });
     for (std::size_t j = 0; j < turns_for_ever_.size(); ++j) {
       const auto i = static_cast<Eigen::Index>(j);
       data.used_time_us[j] = feedback[j].encoder_time_us;
       data.turns[j] = counted(feedback[j].reading, j, data);
       data.sample.q[i] = position_in(data.turns[j]);
-      data.sample.dq[i] =
-          velocity_of(feedback[j].reading, data.sample.q[i], data.unseen_ticks, data.velocity[j]);
       data.sample.tau[i] = static_cast<Scalar>(feedback[j].status.applied_torque);
+      observe(j, data);
+      data.sample.dq[i] = feedback[j].reading.has_velocity
+                              ? static_cast<Scalar>(feedback[j].reading.velocity)
+                              : data.observed.dq[i];
     }
+  }
+
+  // What joint `joint` is given from now on, N m or N, held at rest until now.
+  static void begin_torque(std::size_t joint, Scalar torque, Data& data) {
+    const auto i = static_cast<Eigen::Index>(joint);
+    data.sample.tau[i] = torque;
+    if (!data.observes) return;
+    data.observed.tau[i] = torque;
+    offnominal::begin_torque(torque, data.motion[joint]);
   }
 
   // Every velocity is one that was sent, or that the observer knows by now.
   [[nodiscard]] bool is_settled(const Data& data) const {
-    return std::all_of(data.velocity.begin(), data.velocity.end(), [&](const auto& observer) {
-      return observer.updates == 0 || offnominal::is_settled(observer_, observer);
+    return std::all_of(data.motion.begin(), data.motion.end(), [&](const auto& motion) {
+      return motion.observer.updates == 0 || offnominal::is_settled(observer_, motion.observer);
     });
   }
 
   // Velocities have to be observed anew, and turns counted from what is carried.
   void forget(Data& data) const {
-    data.velocity.fill({});
+    data.motion.fill({});
     data.turns.fill({});
   }
 
@@ -154,19 +175,26 @@ class SampleTaker {
     return count.carried + static_cast<Scalar>(count.tens) * kTen;
   }
 
-  [[nodiscard]] Scalar velocity_of(const hal::EncoderReading& reading, Scalar position,
-                                   std::uint32_t missed,
-                                   VelocityObserverState<Scalar>& observer) const {
-    if (reading.has_velocity) {
-      observer = {};
-      return static_cast<Scalar>(reading.velocity);
+  void observe(std::size_t joint, Data& data) const {
+    ObservedMotionState<Scalar>& state = data.motion[joint];
+    if (!data.observes) {
+      state = {};
+      return;
     }
+    const auto i = static_cast<Eigen::Index>(joint);
+    const Scalar position = data.sample.q[i];
+    const Scalar torque = data.sample.tau[i];
+    ObservedMotion<Scalar> motion;
+    const Status status =
+        offnominal::observe(observer_, position, torque, data.unseen_ticks, state, motion);
     // What it cannot follow it starts anew from, which nothing that is finite keeps it from.
-    if (update(observer_, position, observer, missed) != Status::kOk) {
-      observer = {};
-      static_cast<void>(update(observer_, position, observer));
+    if (status != Status::kOk) {
+      state = {};
+      static_cast<void>(offnominal::observe(observer_, position, torque, 0, state, motion));
     }
-    return observer.velocity;
+    data.observed.q[i] = motion.position;
+    data.observed.dq[i] = motion.velocity;
+    data.observed.tau[i] = motion.torque;
   }
 
   PositionRange<N, Scalar> range_;

@@ -111,9 +111,10 @@ template <int N, int L, typename Scalar, typename Memory, typename Space, typena
   const auto put_all = [&](const Vector<N, Scalar>& values) {
     for (const Scalar value : values) put(static_cast<double>(value));
   };
-  put_all(data.sample.q);
-  put_all(data.sample.dq);
-  put_all(data.sample.tau);
+  const JointSample<N, Scalar>& judged = data.judged();
+  put_all(judged.q);
+  put_all(judged.dq);
+  put_all(judged.tau);
   for (const hal::TorqueCommand& command : data.commands) put(static_cast<double>(command.torque));
   put_all(data.output.psi_hat);
   put_all(controller.acting_compensation(data));
