@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include "common/error.hpp"
 #include "support/repetitions.hpp"
@@ -78,6 +80,69 @@ TEST(Tightest, OfTwoNumbersIsTheBestVertex) {
     const VectorXd cost = rows.colwise().mean();
     const double best = best_vertex(rows, error, cost);
     EXPECT_NEAR(cost.dot(c), best, 3e-6 * best) << run;
+  }
+}
+
+// Whether a cheaper point than c is allowed: none is where the cost is a sum of active constraints'
+// normals, each times a number that is not negative.
+bool is_optimal(const MatrixXd& rows, const VectorXd& error, const VectorXd& lowest,
+                const VectorXd& highest, const VectorXd& cost, const VectorXd& c) {
+  constexpr double kActive = 1e-5;
+  const Index n = c.size();
+  std::vector<VectorXd> normals;
+  for (Index i = 0; i < rows.rows(); ++i) {
+    if (rows.row(i).dot(c) < error[i] * (1 + kActive)) normals.emplace_back(rows.row(i));
+  }
+  for (Index k = 0; k < n; ++k) {
+    if (c[k] < lowest[k] * (1 + kActive)) normals.emplace_back(VectorXd::Unit(n, k));
+    if (c[k] > highest[k] * (1 - kActive)) normals.emplace_back(-VectorXd::Unit(n, k));
+  }
+  const std::size_t count = normals.size();
+  if (count < static_cast<std::size_t>(n)) return false;
+  std::vector<bool> taken(count, false);
+  std::fill(taken.begin(), taken.begin() + n, true);
+  do {
+    MatrixXd some(n, n);
+    Index column = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (taken[i]) some.col(column++) = normals[i];
+    }
+    const Eigen::FullPivLU<MatrixXd> lu(some);
+    if (lu.isInvertible() && lu.solve(cost).minCoeff() > -1e-6) return true;
+  } while (std::prev_permutation(taken.begin(), taken.end()));
+  return false;
+}
+
+// What a table over a joint's speed asks for: a filter's answer to where the joint was, errors that
+// are large where it stands, and each number held between a lowest and a highest.
+TEST(Tightest, OfATableWithLimitsIsTheOptimum) {
+  auto generator = offnominal::test::seeded_generator();
+  std::uniform_real_distribution<double> uniform(0, 1);
+  constexpr Index kPoints = 6;
+  constexpr Index kRows = 3000;
+  for (int run = 0; run < offnominal::test::repetitions(20); ++run) {
+    MatrixXd rows(kRows, kPoints);
+    VectorXd error(kRows);
+    VectorXd filtered = VectorXd::Zero(kPoints);
+    const double turn = 0.002 + 0.003 * uniform(generator);
+    for (Index i = 0; i < kRows; ++i) {
+      const double place = (kPoints - 1) * std::abs(std::sin(turn * static_cast<double>(i)) *
+                                                    std::sin(0.37 * turn * static_cast<double>(i)));
+      const auto below = std::min<Index>(static_cast<Index>(place), kPoints - 2);
+      filtered *= 0.99;
+      filtered[below] += 0.01 * (static_cast<double>(below) + 1 - place);
+      filtered[below + 1] += 0.01 * (place - static_cast<double>(below));
+      rows.row(i) = filtered;
+      const double stands = std::exp(-4 * place);
+      error[i] = filtered.sum() * (0.2 + 2 * stands * uniform(generator) + 0.1 * place);
+    }
+    const double constant = error.maxCoeff();
+    const VectorXd lowest = VectorXd::Constant(kPoints, 0.1 * constant);
+    const VectorXd highest = VectorXd::Constant(kPoints, 3 * constant);
+    const VectorXd c = tightest({part_of(rows, error)}, lowest, VectorXd::Ones(kPoints), highest);
+    EXPECT_GE((rows * c - error).minCoeff(), -1e-5 * constant) << run;
+    EXPECT_TRUE(is_optimal(rows, error, lowest, highest, rows.colwise().mean(), c))
+        << run << ": " << c.transpose();
   }
 }
 
