@@ -31,6 +31,15 @@ inline void add_filter_options(CLI::App& verb, FilterRequest& request) {
                   "second, or 100 where --cutoff is given");
 }
 
+// Of the verbs that run a monitor.
+inline void add_observe_option(CLI::App& verb, bool& observe_velocity) {
+  verb.add_flag("--observe-velocity", observe_velocity,
+                "As a controller judges whose drives send positions alone: velocities observed of "
+                "positions up to now, whatever was recorded, and positions and torques of the same "
+                "time. Without it velocities are those that were recorded; of joints without one "
+                "they are made of positions before and after the sample, which no controller has");
+}
+
 /// --channels, --period and --payload; `whose`: "recording's" or "recordings'".
 inline void add_channels_option(CLI::App& verb, ChannelOptions& channels,
                                 const std::string& whose) {

@@ -13,6 +13,7 @@
 #include "common/nearest.hpp"
 #include "common/number.hpp"
 #include "common/output_file.hpp"
+#include "log/observed_motion.hpp"
 #include "robot/payload.hpp"
 #include "robot/payload_check.hpp"
 
@@ -145,6 +146,18 @@ FitData read_fit_data(const std::string& verb, const std::string& option, const 
 FitData read_fit_data(const std::string& verb, const std::string& option, const FitFiles& files,
                       ReadOne* read_one, Progress& progress) {
   return read_fit_data(verb, option, files, read_robot(files.robot), read_one, progress);
+}
+
+void observe_velocities(const FitFiles& files, FitData& data) {
+  if (!files.observe_velocity) return;
+  for (std::vector<Log>* group : {&data.logs, &data.holdout}) {
+    const auto settles = [](const Log& log) {
+      return log.sample_count() > MotionObserver(1, log.period_s).ticks_to_settle();
+    };
+    const auto end = std::stable_partition(group->begin(), group->end(), settles);
+    if (end != group->begin()) group->erase(end, group->end());
+    for (Log& log : *group) log = as_observed(log);
+  }
 }
 
 std::string file_names(const std::vector<std::string>& files) {

@@ -42,6 +42,7 @@ struct FitFiles {
   std::vector<std::string> logs;
   std::vector<std::string> holdout;
   ChannelOptions channels;
+  bool observe_velocity = false;  // --observe-velocity, of verbs that have it
 };
 struct FitData {
   RobotDescription robot;
@@ -57,6 +58,11 @@ FitData read_fit_data(const std::string& verb, const std::string& option, const 
 // The same of a robot that was read already.
 FitData read_fit_data(const std::string& verb, const std::string& option, const FitFiles& files,
                       RobotDescription robot, ReadOne* read_one, Progress& progress);
+
+// Where --observe-velocity is given: every recording as a controller judges it that observes its
+// velocities (observed_motion.hpp). Parts that are too short to settle in are left out where others
+// are not.
+void observe_velocities(const FitFiles& files, FitData& data);
 
 // "a.csv, b.csv", "standard input": as input_name() has them, for a robot file's word on its
 // source.

@@ -122,6 +122,7 @@ void run(const CalibrateOptions& options, const std::string& command_line, ExitC
   FitData data =
       read_fit_data("calibrate", "LOG", options.files, std::move(robot), read_log, progress);
   const FaultFree healthy = keep_fault_free(data, options.keep, progress);
+  observe_velocities(options.files, data);
   progress.begin("shapes of the bound");
   const CalibrateRequest request{
       .alarms_per_hour = options.alarms_per_hour,
@@ -179,6 +180,7 @@ void set_up_calibrate(CLI::App& verb, ExitCode& exit_code) {
                   "Largest error of the measured velocity, rad/s or m/s, where it is known; "
                   "without it, it is found with the bound. None where "
                   "estimator.space = \"torque\"");
+  add_observe_option(verb, options->files.observe_velocity);
   add_channels_option(verb, options->files.channels, "recordings'");
   add_keep_option(verb, options->keep);
   add_report_option(verb, options->answer);

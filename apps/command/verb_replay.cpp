@@ -23,6 +23,7 @@
 #include "common/text_table.hpp"
 #include "common/time_words.hpp"
 #include "log/log_format.hpp"
+#include "log/observed_motion.hpp"
 #include "log/read_log.hpp"
 #include "replay/monitor_filter.hpp"
 #include "replay/replay.hpp"
@@ -37,6 +38,7 @@ struct ReplayOptions {
   std::string log;
   std::string robot;
   ChannelOptions channels;
+  bool observe_velocity = false;
   bool check = false;
   AnswerOptions answer;
 };
@@ -126,10 +128,11 @@ void run(const ReplayOptions& options, const std::string& command_line, ExitCode
   const RobotDescription robot = read_robot(options.robot);
   require_bound(robot, options.robot);
   check_payloads("replay", options.channels, {options.log});
-  const Log log = read_log(options.log, robot, options.channels);
+  Log log = read_log(options.log, robot, options.channels);
   require_whole(log);
   Progress progress;
   const auto faults = examined({std::span(&log, 1)}, robot, progress);
+  if (options.observe_velocity) log = as_observed(log);
   progress.begin("the monitor over " + log.file);
   const Replay result = replay(robot, log, [&](double share) { progress.reach(share); });
   progress.end();
@@ -154,6 +157,7 @@ void set_up_replay(CLI::App& verb, ExitCode& exit_code) {
   verb.add_option("LOG", options->log, "Recording, " + log_format_names())->required();
   verb.add_option("--robot", options->robot, "Robot file; its uncertainty bound sets the threshold")
       ->required();
+  add_observe_option(verb, options->observe_velocity);
   add_channels_option(verb, options->channels, "recording's");
   add_page_options(verb, options->answer, "figures");
   verb.add_flag(

@@ -47,6 +47,7 @@ void run(const TuneOptions& options, ExitCode& exit_code) {
   FitData data = read_fit_data("tune", "LOG", options.files, read_log, progress);
   require_carried(data.robot, options.files.robot);
   const FaultFree healthy = keep_fault_free(data, options.keep, progress);
+  observe_velocities(options.files, data);
   progress.begin("filters and networks");
   const Tuned tuned =
       tune(data.robot, options.request, data.logs, data.holdout, [&progress] { progress.step(); });
@@ -94,6 +95,7 @@ void set_up_tune(CLI::App& verb, ExitCode& exit_code) {
   verb.add_option("--alarms-per-hour", options->request.alarms_per_hour,
                   "False alarms per hour that the trials' thresholds are for")
       ->capture_default_str();
+  add_observe_option(verb, options->files.observe_velocity);
   add_channels_option(verb, options->files.channels, "recordings'");
   add_keep_option(verb, options->keep);
   add_json_option(verb, options->answer);

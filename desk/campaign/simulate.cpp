@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "common/error.hpp"
+#include "log/observed_motion.hpp"
 #include "log/sampling.hpp"
 #include "offnominal/sim/encoder.hpp"
 #include "offnominal/sim/hidden/arm_motion.hpp"
@@ -36,7 +37,7 @@ constexpr std::uint64_t kFirstOfCalibration = std::uint64_t{1} << 40U;
 class Sensors {
  public:
   Sensors(const Campaign& campaign, const sim::JointState& start)
-      : config_{.bandwidth_rad_s = 200, .period_s = campaign.plant.period_s},
+      : config_(velocity_observer_config(campaign.plant.period_s)),
         step_rad_(sim::position_step_rad({.bits_per_turn = campaign.plant.encoder_bits})),
         q_(start.q) {
     for (Index j = 0; j < start.q.size(); ++j) {
@@ -157,7 +158,8 @@ class Stand {
         plant_(plants.make(sim::on_trajectory(motion_.at(0)))),
         sensors_(job.campaign, plant_->state()),
         beside_(JointVector::Zero(job.campaign.truth.joint_count())),
-        loop_noise_(job) {
+        loop_noise_(job),
+        observer_(beside_.size(), job.campaign.plant.period_s) {
     const double period_s = job.campaign.plant.period_s;
     kept_ = static_cast<Index>(std::llround(job.duration_s / period_s));
     const Index ticks =
@@ -204,6 +206,10 @@ class Stand {
                                         job.duration_s, draws);
   }
 
+  [[nodiscard]] bool is_observed() const {
+    return job_.campaign.plant.velocity == VelocityKind::kObserved;
+  }
+
   [[nodiscard]] bool has_begun(double t_s) const {
     return job_.fault != nullptr && t_s >= job_.campaign.runs.fault_s - 1e-9;
   }
@@ -244,13 +250,17 @@ class Stand {
   }
 
   void listen(Index row) {
-    Watch::Sample sample{q_.row(row), dq_.row(row), tau_.row(row)};
-    loop_noise_.add(job_.loop_noise_nm, sample.tau, sample.dq);
+    Watch::Sample sample{{q_.row(row), dq_.row(row), tau_.row(row)}, {}};
+    loop_noise_.add(job_.loop_noise_nm, sample.joints.tau, sample.joints.dq);
+    if (is_observed()) {
+      const auto* const observed = observer_.take(sample.joints.q, sample.joints.tau);
+      if (observed == nullptr) return;
+      sample = {*observed, sample.joints.q};
+    }
     beside_ = job_.loop->after(sample, t_s_[row]);
   }
 
   [[nodiscard]] JointVector velocities(JointVector dq, const Fault* fault) const {
-    if (job_.campaign.plant.velocity == VelocityKind::kObserved) return sensors_.dq();
     if (fault != nullptr && fault->kind == FaultKind::kEncoderStuck) dq[fault->joint] = 0;
     return dq;
   }
@@ -287,7 +297,8 @@ class Stand {
     const bool derived = plant.velocity == VelocityKind::kDerived;
     log.dq_derived.assign(static_cast<std::size_t>(joints), derived);
     if (derived) derive_velocities(log);
-    run.log = first_rows(std::move(log), std::min(rows, kept_));
+    log = first_rows(std::move(log), std::min(rows, kept_));
+    run.log = is_observed() ? as_observed(log) : std::move(log);
   }
 
   const Job& job_;
@@ -302,6 +313,7 @@ class Stand {
   Squares before_, after_, end_;
   JointVector beside_;  // N m, that the monitor in the loop has the drives give
   Noise loop_noise_;
+  MotionObserver observer_;  // of what the monitor in the loop is told
   bool begun_ = false;
   bool ended_ = false;
 };

@@ -7,6 +7,7 @@
 
 #include "campaign/momentum_observer.hpp"
 #include "desk/campaign/small_campaign.hpp"
+#include "log/observed_motion.hpp"
 
 namespace offnominal::desk::campaign {
 namespace {
@@ -79,9 +80,25 @@ TEST(Simulator, RecordsAsLongAsTheRunIsWhateverItsVelocitiesAre) {
        {VelocityKind::kDerived, VelocityKind::kObserved, VelocityKind::kSent}) {
     campaign.plant.velocity = kind;
     const Log log = Simulator(campaign).run(run_of(campaign, 0)).log;
-    EXPECT_EQ(log.sample_count(), 750);
-    EXPECT_EQ(log.dq.rows(), 750);
+    const Eigen::Index unsettled =
+        kind == VelocityKind::kObserved ? MotionObserver(1, log.period_s).ticks_to_settle() : 0;
+    EXPECT_EQ(log.sample_count(), 750 - unsettled);
+    EXPECT_EQ(log.dq.rows(), 750 - unsettled);
+    EXPECT_EQ(log.readings.rows() > 0, kind == VelocityKind::kObserved);
   }
+}
+
+// GIVEN a model without an error and ideal encoders WHEN velocities are observed THEN a healthy
+// robot shows hardly more than where they are sent, though the observer is a hundredth of a second
+// late.
+TEST(Simulator, ObservesVelocitiesWithoutALag) {
+  Campaign campaign = without_errors("mujoco");
+  const double sent = unknown_nm(campaign, Simulator(campaign).run(run_of(campaign, 3)).log, 0.1,
+                                 campaign.runs.fault_s);
+  campaign.plant.velocity = VelocityKind::kObserved;
+  const double observed = unknown_nm(campaign, Simulator(campaign).run(run_of(campaign, 3)).log,
+                                     0.1, campaign.runs.fault_s);
+  EXPECT_LT(observed, sent + 0.05);
 }
 
 // A monitor in the loop of the two-link arm, whose bounds the healthy runs keep.
