@@ -88,6 +88,7 @@ TEST(Tightest, OfTwoNumbersIsTheBestVertex) {
 bool is_optimal(const MatrixXd& rows, const VectorXd& error, const VectorXd& lowest,
                 const VectorXd& highest, const VectorXd& cost, const VectorXd& c) {
   constexpr double kActive = 1e-5;
+  constexpr double kOff = 1e-3;  // of cost: the solver is done before the last digit
   const Index n = c.size();
   std::vector<VectorXd> normals;
   for (Index i = 0; i < rows.rows(); ++i) {
@@ -108,38 +109,81 @@ bool is_optimal(const MatrixXd& rows, const VectorXd& error, const VectorXd& low
       if (taken[i]) some.col(column++) = normals[i];
     }
     const Eigen::FullPivLU<MatrixXd> lu(some);
-    if (lu.isInvertible() && lu.solve(cost).minCoeff() > -1e-6) return true;
+    if (lu.isInvertible() && lu.solve(cost).minCoeff() > -kOff) return true;
   } while (std::prev_permutation(taken.begin(), taken.end()));
   return false;
 }
 
-// What a table over a joint's speed asks for: a filter's answer to where the joint was, errors that
-// are large where it stands, and each number held between a lowest and a highest.
+// A joint that stands and moves in turns: its speed, and the torque beside the model, large where
+// it stands.
+struct StopAndGo {
+  VectorXd speed;
+  VectorXd unknown;
+};
+StopAndGo stop_and_go(Index rows, std::mt19937_64& generator) {
+  std::uniform_real_distribution<double> uniform(0, 1);
+  StopAndGo joint{VectorXd::Zero(rows), VectorXd::Zero(rows)};
+  for (Index at = 0; at < rows;) {
+    const Index moves = std::min(at + static_cast<Index>(50 + 300 * uniform(generator)), rows);
+    const Index stands = std::min(moves + static_cast<Index>(100 + 400 * uniform(generator)), rows);
+    joint.unknown.segment(at, moves - at).setConstant(0.1 + 2 * std::pow(uniform(generator), 3));
+    const double peak = 0.2 + 2 * std::pow(uniform(generator), 2);
+    const double off = 0.3 * uniform(generator);
+    const double share = 0.1 * uniform(generator);
+    for (Index i = moves; i < stands; ++i) {
+      const double part = static_cast<double>(i - moves) / static_cast<double>(stands - moves);
+      joint.speed[i] = peak * std::pow(std::sin(3.14159 * part), 2);
+      joint.unknown[i] = off + share * joint.speed[i] * joint.speed[i];
+    }
+    at = stands;
+  }
+  return joint;
+}
+
+// What a table over the speed, its points at `at`, asks for: a filter's answer to where the joint
+// was, and to the torque.
+ThresholdRows table_rows(const StopAndGo& joint, const VectorXd& at) {
+  constexpr double kShare = 0.01;
+  MatrixXd rows(joint.speed.size(), at.size());
+  VectorXd error(joint.speed.size());
+  VectorXd filtered = VectorXd::Unit(at.size(), 0);
+  double filtered_error = 0;
+  for (Index i = 0; i < rows.rows(); ++i) {
+    const double speed = joint.speed[i];
+    Index below = 0;
+    while (below + 2 < at.size() && speed > at[below + 1]) ++below;
+    const double part = std::min(1.0, (speed - at[below]) / (at[below + 1] - at[below]));
+    filtered *= 1 - kShare;
+    filtered[below] += kShare * (1 - part);
+    filtered[below + 1] += kShare * part;
+    rows.row(i) = filtered;
+    filtered_error += kShare * (joint.unknown[i] - filtered_error);
+    error[i] = filtered_error;
+  }
+  return part_of(rows, error);
+}
+
+// GIVEN many recordings, so that rows come to the programme in rounds of hundreds, WHEN each number
+// is held between a lowest and a highest THEN what comes is the optimum.
 TEST(Tightest, OfATableWithLimitsIsTheOptimum) {
   auto generator = offnominal::test::seeded_generator();
-  std::uniform_real_distribution<double> uniform(0, 1);
-  constexpr Index kPoints = 6;
-  constexpr Index kRows = 3000;
-  for (int run = 0; run < offnominal::test::repetitions(20); ++run) {
-    MatrixXd rows(kRows, kPoints);
-    VectorXd error(kRows);
-    VectorXd filtered = VectorXd::Zero(kPoints);
-    const double turn = 0.002 + 0.003 * uniform(generator);
-    for (Index i = 0; i < kRows; ++i) {
-      const double place = (kPoints - 1) * std::abs(std::sin(turn * static_cast<double>(i)) *
-                                                    std::sin(0.37 * turn * static_cast<double>(i)));
-      const auto below = std::min<Index>(static_cast<Index>(place), kPoints - 2);
-      filtered *= 0.99;
-      filtered[below] += 0.01 * (static_cast<double>(below) + 1 - place);
-      filtered[below + 1] += 0.01 * (place - static_cast<double>(below));
-      rows.row(i) = filtered;
-      const double stands = std::exp(-4 * place);
-      error[i] = filtered.sum() * (0.2 + 2 * stands * uniform(generator) + 0.1 * place);
+  const VectorXd at = (VectorXd(6) << 0, 0.1, 0.25, 0.5, 0.9, 2.2).finished();
+  for (int run = 0; run < offnominal::test::repetitions(60); ++run) {
+    std::vector<ThresholdRows> parts;
+    for (int i = 0; i < 11; ++i) parts.push_back(table_rows(stop_and_go(4000, generator), at));
+    MatrixXd rows(0, at.size());
+    VectorXd error(0);
+    for (const ThresholdRows& part : parts) {
+      rows.conservativeResize(rows.rows() + part.size(), Eigen::NoChange);
+      rows.bottomRows(part.size()) = part.filtered;
+      error.conservativeResize(rows.rows());
+      error.tail(part.size()) = part.demands.front().error;
     }
     const double constant = error.maxCoeff();
-    const VectorXd lowest = VectorXd::Constant(kPoints, 0.1 * constant);
-    const VectorXd highest = VectorXd::Constant(kPoints, 3 * constant);
-    const VectorXd c = tightest({part_of(rows, error)}, lowest, VectorXd::Ones(kPoints), highest);
+    const VectorXd lowest = VectorXd::Constant(at.size(), 0.1 * constant);
+    const VectorXd highest = VectorXd::Constant(at.size(), 3 * constant);
+    const VectorXd c =
+        tightest({parts.begin(), parts.end()}, lowest, VectorXd::Ones(at.size()), highest);
     EXPECT_GE((rows * c - error).minCoeff(), -1e-5 * constant) << run;
     EXPECT_TRUE(is_optimal(rows, error, lowest, highest, rows.colwise().mean(), c))
         << run << ": " << c.transpose();
