@@ -37,6 +37,9 @@ class Programme {
             const Eigen::VectorXd& highest)
       : model_(Clp_newModel(), &Clp_deleteModel) {
     Clp_setLogLevel(model_.get(), 0);
+    // Clp 1.17 keeps the factors of its own scaling from before rows came, and calls optimal what
+    // costs up to three times the optimum.
+    Clp_scaling(model_.get(), 0);
     const auto columns = static_cast<int>(cost.size());
     const std::vector<int> starts(static_cast<std::size_t>(columns) + 1, 0);
     Clp_addColumns(model_.get(), columns, lowest.data(), highest.data(), cost.data(), starts.data(),
@@ -57,12 +60,11 @@ class Programme {
     Clp_addRows(model_.get(), 1, &lower, &upper, starts, columns.data(), values.data());
   }
 
-  // From the beginning each time: a dual simplex that goes on from the last basis, with rows that
-  // have come since and columns at their highest, calls optimal what costs up to three times the
-  // optimum (Clp 1.17).
   [[nodiscard]] Eigen::VectorXd solve(Index size) {
-    Clp_initialPrimalSolve(model_.get());
-    if (Clp_status(model_.get()) != 0) Clp_initialDualSolve(model_.get());
+    Clp_dual(model_.get(), 0);
+    // Rows of very different size can stop a dual simplex that goes on from the last basis: anew
+    // then.
+    if (Clp_status(model_.get()) != 0) Clp_initialPrimalSolve(model_.get());
     // A millionth off what is allowed it calls impossible, and goes on from there when asked to.
     if (Clp_status(model_.get()) != 0) Clp_primal(model_.get(), 0);
     if (Clp_status(model_.get()) != 0) refuse_programme("no numbers that cover every sample");
