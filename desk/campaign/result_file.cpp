@@ -31,7 +31,7 @@ CREATE TABLE result (
   alarms INTEGER NOT NULL, peak_before REAL NOT NULL, peak_after REAL NOT NULL,
   tracking_before_rad REAL, tracking_after_rad REAL, ran_away_s REAL,
   named TEXT, named_joint INTEGER, named_size REAL, named_after_s REAL,
-  tracking_end_rad REAL, tracking_end_accommodated_rad REAL,
+  tracking_end_rad REAL, tracking_end_accommodated_rad REAL, moves_after_s REAL,
   PRIMARY KEY (run, detector)) WITHOUT ROWID;
 )";
 
@@ -39,8 +39,8 @@ constexpr const char* kColumns =
     "run, detector, seed, kind, joint, size, judged_s, fault_s, detected, delay_s, first_joint, "
     "joint_right, early, alarms, peak_before, peak_after, tracking_before_rad, tracking_after_rad, "
     "ran_away_s, named, named_joint, named_size, named_after_s, tracking_end_rad, "
-    "tracking_end_accommodated_rad";
-constexpr int kColumnCount = 25;
+    "tracking_end_accommodated_rad, moves_after_s";
+constexpr int kColumnCount = 26;
 
 CampaignRow read_campaign_row(Database& database) {
   Statement one(database, "SELECT name, identity, runs FROM campaign");
@@ -130,6 +130,7 @@ void insert(Database& database, const std::vector<Result>& rows) {
     bind_named(row.named, at, statement);
     statement.bind(at + 4, row.tracking_end_rad);
     statement.bind(at + 5, row.tracking_end_accommodated_rad);
+    statement.bind(at + 6, row.moves_after_s);
     statement.step();
   }
 }
@@ -165,6 +166,7 @@ Result read_row(const Statement& at, const std::string& file) {
   if (!at.is_null(19)) row.named = read_named(at, 19, file);
   row.tracking_end_rad = real(23);
   row.tracking_end_accommodated_rad = real(24);
+  row.moves_after_s = real(25);
   return row;
 }
 

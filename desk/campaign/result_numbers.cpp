@@ -8,7 +8,7 @@
 namespace offnominal::desk::campaign {
 namespace {
 
-constexpr std::size_t kNumbers = 20;
+constexpr std::size_t kNumbers = 21;
 
 template <typename Value>
 double or_nan(const std::optional<Value>& value) {
@@ -49,7 +49,8 @@ std::vector<double> numbers_of(const Campaign& campaign, const Result& result) {
           result.named ? result.named->size : 0,
           result.named ? result.named->after_s : 0,
           or_nan(result.tracking_end_rad),
-          or_nan(result.tracking_end_accommodated_rad)};
+          or_nan(result.tracking_end_accommodated_rad),
+          or_nan(result.moves_after_s)};
 }
 
 Result result_of(const Campaign& campaign, const std::vector<double>& numbers) {
@@ -83,6 +84,7 @@ Result result_of(const Campaign& campaign, const std::vector<double>& numbers) {
   }
   result.tracking_end_rad = real_of(numbers[18]);
   result.tracking_end_accommodated_rad = real_of(numbers[19]);
+  result.moves_after_s = real_of(numbers[20]);
   return result;
 }
 

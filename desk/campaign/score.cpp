@@ -33,6 +33,7 @@ Result score_of(const Campaign& campaign, const Run& run, const RecordedRun& rec
   result.tracking_after_rad = recorded.tracking_after_rad;
   result.tracking_end_rad = recorded.tracking_end_rad;
   result.ran_away_s = recorded.ran_away_s;
+  result.moves_after_s = recorded.moves_after_s;
   result.judged_s = static_cast<double>(judged.t_s.size()) * campaign.plant.period_s;
   double before_until_s = std::numeric_limits<double>::infinity();
   if (run.fault != nullptr) {

@@ -39,6 +39,7 @@ struct Result {
   // not accommodate.
   std::optional<double> tracking_end_accommodated_rad;
   std::optional<double> ran_away_s;
+  std::optional<double> moves_after_s;  // RecordedRun
 
   friend bool operator==(const Result&, const Result&) = default;
 };

@@ -182,6 +182,7 @@ class Stand {
     run.tracking_before_rad = before_.rms();
     run.tracking_after_rad = after_.rms();
     run.tracking_end_rad = run.ran_away_s ? std::nullopt : end_.rms();
+    run.moves_after_s = moves_after_s_;
     recorded(rows, run);
     return run;
   }
@@ -237,10 +238,23 @@ class Stand {
     dq_.row(row) = velocities(is.dq, fault);
     tau_.row(row) = share * before_told_ + (1 - share) * told;
     (fault == nullptr ? before_ : after_).add(wanted.q - is.q);
+    follow_motion(t_s, wanted);
     if (is_at_end(t_s)) end_.add(wanted.q - is.q);
     if (job_.loop != nullptr) listen(row);
     before_told_ = told;
     plant_->step(t_s, given_torque(told, fault), job_.campaign.plant.period_s);
+  }
+
+  // When the joint at fault is to move.
+  void follow_motion(double t_s, const sim::DesiredMotion& wanted) {
+    constexpr double kMoves = 1.0 / 50;
+    if (job_.fault == nullptr || !info_of(job_.fault->kind).of_joint || moves_after_s_) return;
+    const double speed = std::abs(wanted.dq[job_.fault->joint]);
+    if (!has_begun(t_s)) {
+      fastest_ = std::max(fastest_, speed);
+    } else if (speed > kMoves * fastest_) {
+      moves_after_s_ = std::max(t_s - job_.campaign.runs.fault_s, 0.0);
+    }
   }
 
   [[nodiscard]] bool is_at_end(double t_s) const {
@@ -311,6 +325,8 @@ class Stand {
   Index kept_ = 0;  // of the ticks
   JointVector before_told_;
   Squares before_, after_, end_;
+  double fastest_ = 0;  // of the joint at fault, before it
+  std::optional<double> moves_after_s_;
   JointVector beside_;  // N m, that the monitor in the loop has the drives give
   Noise loop_noise_;
   MotionObserver observer_;  // of what the monitor in the loop is told

@@ -18,6 +18,10 @@ struct RecordedRun {
   std::optional<double> tracking_after_rad;
   // The same over the last quarter of the time behind the fault.
   std::optional<double> tracking_end_rad;
+  // From the fault of one joint until that joint is to move, faster than a fiftieth of its fastest
+  // before, s: what stands shows no friction, and not that it is stuck. None: it is not to, or the
+  // fault is no joint's.
+  std::optional<double> moves_after_s;
   sim::JointVector torque_noise_nm;  // standard deviation in the log
   // When the plant's motion ran away under the fault: the recording ends there, s.
   std::optional<double> ran_away_s;

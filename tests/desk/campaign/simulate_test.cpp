@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "campaign/momentum_observer.hpp"
@@ -99,6 +100,36 @@ TEST(Simulator, ObservesVelocitiesWithoutALag) {
   const double observed = unknown_nm(campaign, Simulator(campaign).run(run_of(campaign, 3)).log,
                                      0.1, campaign.runs.fault_s);
   EXPECT_LT(observed, sent + 0.05);
+}
+
+TEST(Simulator, SaysWhenTheJointAtFaultIsToMove) {
+  const Campaign campaign = without_errors("robot");
+  const Simulator simulator(campaign);
+  bool one_stands = false;
+  for (int number = 0; number < 60 && !one_stands; ++number) {
+    for (const Fault& fault : campaign.faults) {
+      const RecordedRun run = simulator.run({number, &fault, campaign.runs.duration_s});
+      if (fault.kind == FaultKind::kPayload) {
+        EXPECT_FALSE(run.moves_after_s);
+        continue;
+      }
+      const bool of_drive =
+          fault.kind == FaultKind::kFriction || fault.kind == FaultKind::kTorqueLost;
+      if (!of_drive || !run.moves_after_s) continue;
+      const double at_s = campaign.runs.fault_s + *run.moves_after_s;
+      double fastest = 0;
+      double stands_at = 0;
+      for (Eigen::Index row = 0; row < run.log.sample_count(); ++row) {
+        const double speed = std::abs(run.log.dq(row, fault.joint));
+        if (run.log.t_s[row] < campaign.runs.fault_s) fastest = std::max(fastest, speed);
+        const bool between = run.log.t_s[row] >= campaign.runs.fault_s && run.log.t_s[row] < at_s;
+        if (between) stands_at = std::max(stands_at, speed);
+      }
+      EXPECT_LT(stands_at, fastest / 20) << number << ": it follows what is wanted";
+      one_stands = one_stands || *run.moves_after_s > 0;
+    }
+  }
+  EXPECT_TRUE(one_stands);
 }
 
 // A monitor in the loop of the two-link arm, whose bounds the healthy runs keep.
