@@ -11,6 +11,7 @@
 #include <offnominal/finite.hpp>
 #include <offnominal/hal/drive_protocol.hpp>
 #include <offnominal/sample.hpp>
+#include <utility>
 
 // From what drives have said of the joints to the sample of a tick.
 
@@ -110,15 +111,17 @@ class SampleTaker {
       return;
     }
     // One joint alone without a velocity makes all late: they carry each other.
-    data.observes = std::any_of(feedback.begin(), feedback.end(),
-                                [](const auto& joint) { return !joint.reading.has_velocity; });
+    const bool observes = std::any_of(feedback.begin(), feedback.end(), [](const auto& joint) {
+      return !joint.reading.has_velocity;
+    });
+    if (std::exchange(data.observes, observes) && !observes) data.motion.fill({});
     for (std::size_t j = 0; j < turns_for_ever_.size(); ++j) {
       const auto i = static_cast<Eigen::Index>(j);
       data.used_time_us[j] = feedback[j].encoder_time_us;
       data.turns[j] = counted(feedback[j].reading, j, data);
       data.sample.q[i] = position_in(data.turns[j]);
       data.sample.tau[i] = static_cast<Scalar>(feedback[j].status.applied_torque);
-      observe(j, data);
+      if (observes) observe(j, data);
       data.sample.dq[i] = feedback[j].reading.has_velocity
                               ? static_cast<Scalar>(feedback[j].reading.velocity)
                               : data.observed.dq[i];
@@ -177,10 +180,6 @@ class SampleTaker {
 
   void observe(std::size_t joint, Data& data) const {
     ObservedMotionState<Scalar>& state = data.motion[joint];
-    if (!data.observes) {
-      state = {};
-      return;
-    }
     const auto i = static_cast<Eigen::Index>(joint);
     const Scalar position = data.sample.q[i];
     const Scalar torque = data.sample.tau[i];
