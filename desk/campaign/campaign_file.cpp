@@ -15,6 +15,7 @@
 #include "common/number.hpp"
 #include "common/toml_table.hpp"
 #include "exchange/export_robot.hpp"
+#include "log/observed_motion.hpp"
 #include "offnominal/sim/hidden/arm_motion.hpp"
 #include "robot/robot_file.hpp"
 
@@ -188,7 +189,18 @@ CalibrationSettings read_calibration(const TomlTable& root) {
   return settings;
 }
 
-RunSettings read_runs(const TomlTable& root) {
+// A recording of observed velocities begins where they are settled.
+void check_settled(const TomlTable& runs, double fault_s, const PlantSettings& plant) {
+  if (plant.velocity != VelocityKind::kObserved) return;
+  const MotionObserver observer(1, plant.period_s);
+  const double settled_s = static_cast<double>(observer.ticks_to_settle()) * plant.period_s;
+  if (fault_s > settled_s) return;
+  runs.refuse("fault_s", shortest(fault_s) + " s",
+              fmt::format("above {:g} s, where an observed velocity has settled", settled_s),
+              "let the fault begin later");
+}
+
+RunSettings read_runs(const TomlTable& root, const PlantSettings& plant) {
   RunSettings runs;
   const auto table = root.optional_table(
       "runs", {"per_fault", "duration_s", "fault_s", "fault_free_hours", "fault_free_duration_s"});
@@ -206,6 +218,7 @@ RunSettings read_runs(const TomlTable& root) {
                   "below duration_s = " + shortest(runs.duration_s) + " s",
                   "let the fault begin within the run");
   }
+  check_settled(*table, runs.fault_s, plant);
   return runs;
 }
 
@@ -314,7 +327,7 @@ Campaign read_campaign(const std::filesystem::path& path) {
   campaign.model = model_of(campaign, robot);
   campaign.calibration = read_calibration(root);
   campaign.detectors = read_detectors(root, campaign.plant);
-  campaign.runs = read_runs(root);
+  campaign.runs = read_runs(root, campaign.plant);
   campaign.faults = read_faults(root, document, campaign);
   if (campaign.run_count() == 0) {
     root.refuse("fault", "no fault and no fault-free hours", "a run at least",

@@ -15,7 +15,7 @@ namespace {
 
 const FileKind& kind_of_file() {
   static const FileKind kind{.application = 0x6f666e63,  // "ofnc"
-                             .format = 3,
+                             .format = 4,
                              .words = "results that offnominal campaign wrote"};
   return kind;
 }

@@ -115,6 +115,20 @@ TEST(CampaignFile, RefusesWhatIsWrongWithFileLineFoundAllowedAndMend) {
               AllOf(HasSubstr("known afterwards"), HasSubstr("observed")));
 }
 
+TEST(CampaignFile, OfObservedVelocitiesHasNoFaultBeforeTheyHaveSettled) {
+  const std::string observed = replaced(small_campaign(""), "period_s = 0.002\n",
+                                        "period_s = 0.002\nvelocity = \"observed\"\n");
+  EXPECT_EQ(campaign_of(observed).plant.velocity, VelocityKind::kObserved);
+  const auto beginning = [&](const std::string& fault_s) {
+    return replaced(observed, "fault_s = 0.8", "fault_s = " + fault_s);
+  };
+  EXPECT_THAT(refusal_of(beginning("0.09")), AllOf(HasSubstr("fault_s"), HasSubstr("settled")));
+  EXPECT_NO_THROW(static_cast<void>(campaign_of(beginning("0.1"))));
+  const std::string sent = replaced(observed, "\"observed\"", "\"sent\"");
+  EXPECT_NO_THROW(
+      static_cast<void>(campaign_of(replaced(sent, "fault_s = 0.8", "fault_s = 0.09"))));
+}
+
 TEST(CampaignFile, OfASecondFilterHasItsPoleOfTheMonitorAlone) {
   const std::string good = small_campaign("");
   const auto with_filter = [&](const std::string& kind, const std::string& pole) {
