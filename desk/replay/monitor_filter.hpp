@@ -15,6 +15,7 @@ struct MonitorFilter {
   double alpha_per_s = 0;  // the pole of the residual's filter
   // Of the positions of joints whose velocity was not recorded; none: all were.
   std::optional<double> velocity_cutoff_hz;
+  bool observed = false;  // the samples are those of a controller that observes its velocities
 
   [[nodiscard]] double cutoff_hz() const;  // of the pole
 };
@@ -24,7 +25,8 @@ struct MonitorFilter {
 /// "samples as recorded, the monitor's own filter 1.592 Hz by alpha_per_s", with a word on derived
 /// velocities.
 [[nodiscard]] std::string words_of(const MonitorFilter& filter);
-/// {cutoff_hz, cutoff_from: "alpha_per_s", alpha_per_s, velocity_cutoff_hz (null: recorded)}
+/// {cutoff_hz, cutoff_from: "alpha_per_s", alpha_per_s, velocity_cutoff_hz (null: recorded, or
+/// observed), observed}
 [[nodiscard]] nlohmann::ordered_json to_json(const MonitorFilter& filter);
 
 }  // namespace offnominal::desk

@@ -20,6 +20,7 @@ namespace offnominal::desk {
 namespace {
 
 using test::CommandResult;
+using testing::AllOf;
 using testing::HasSubstr;
 using Words = std::vector<std::string>;
 
@@ -120,6 +121,31 @@ TEST_F(FilterOfVerbs, OfDerivedVelocitiesIsSaidToo) {
   EXPECT_EQ(replayed.at("velocity_cutoff_hz"), 50);
   EXPECT_THAT(run({"replay", path("arm.csv")}, more).out,
               HasSubstr("; velocities that were not recorded: of positions, low-pass 50 Hz\n"));
+}
+
+// What a controller judges that observes its velocities, whatever was recorded; a bound calibrated
+// so covers them.
+TEST_F(FilterOfVerbs, OfObservedVelocitiesIsTheControllersOwn) {
+  const Words observed{"--observe-velocity"};
+  const std::string log = path("arm.csv");
+  const Words calibrate = writing({"calibrate", log});
+  for (const Words& verb : {Words{"replay", log}, calibrate}) {
+    EXPECT_TRUE(filter_of(verb, observed).at("observed"));
+    EXPECT_FALSE(filter_of(verb).at("observed"));
+    EXPECT_THAT(run(verb, observed).out,
+                AllOf(HasSubstr("samples as a controller observes them, the monitor's own filter"),
+                      HasSubstr("velocities as a controller observes them of positions, two poles "
+                                "at 50 rad/s")));
+  }
+  test::put(folder_ / "channels.toml",
+            "time = \"t\"\nposition = [\"q1\", \"q2\"]\ntorque = [\"tau1\", \"tau2\"]\n");
+  const Words positions{"--channels", path("channels.toml")};
+  static_cast<void>(filter_of(calibrate, positions));
+  EXPECT_FALSE(read_robot_file(path("new.toml")).bound->covers_velocities);
+  Words both = positions;
+  both.insert(both.end(), observed.begin(), observed.end());
+  static_cast<void>(filter_of(calibrate, both));
+  EXPECT_TRUE(read_robot_file(path("new.toml")).bound->covers_velocities);
 }
 
 }  // namespace
