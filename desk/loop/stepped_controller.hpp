@@ -22,8 +22,10 @@ namespace offnominal::desk {
 /// What the controller knows after a tick, one number per joint in every vector.
 struct ControllerView {
   std::uint64_t run_ticks = 0;  // since time began
-  bool fresh = false;           // it had a reading of every joint
+  bool fresh = false;           // it had a reading of every joint, and one to judge
   bool drives_follow = false;
+  // What it judges: where it observes velocities, position, velocity and torque of one time a
+  // little earlier.
   sim::JointState seen;
   sim::JointVector tau;  // N m or N, that the drives said they gave
   sim::JointVector psi_hat;

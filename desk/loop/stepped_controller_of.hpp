@@ -44,10 +44,11 @@ class SteppedControllerOf final : public SteppedController {
     };
     ControllerView view;
     view.run_ticks = data_->run_ticks;
-    view.fresh = data_->fresh;
+    view.fresh = data_->fresh && !controller_.is_settling(*data_);
     view.drives_follow = data_->drives_follow;
-    view.seen = {doubles(data_->sample.q), doubles(data_->sample.dq)};
-    view.tau = doubles(data_->sample.tau);
+    const JointSample<kRuntimeJoints, Scalar>& judged = data_->judged();
+    view.seen = {doubles(judged.q), doubles(judged.dq)};
+    view.tau = doubles(judged.tau);
     view.psi_hat = doubles(data_->output.psi_hat);
     view.compensation = doubles(controller_.acting_compensation(*data_));
     view.error_norm = static_cast<double>(data_->output.error_norm);

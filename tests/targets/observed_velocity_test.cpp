@@ -102,6 +102,27 @@ TEST(ObservedVelocity, IsNotWatchedBeforeItHasSettled) {
   EXPECT_FALSE(joint.data->output.detector.latched);
 }
 
+// GIVEN an arm that brakes or hands held before its drives did WHEN time begins THEN nothing is
+// judged until what is observed is of the time since then, and the run's time goes on meanwhile.
+TEST(ObservedVelocity, IsNotJudgedOfTheTimeBeforeTheDrivesFollowed) {
+  JointOnDesk joint(observing());
+  joint.sends_velocity = false;
+  ASSERT_EQ(joint.start(), Fault::kNone);
+  while (!joint.data->drives_follow) joint.tick();
+  const std::uint64_t begin = joint.data->monitor.tick - joint.data->run_ticks;
+  joint.push_nm = 3;
+  int ticks = 0;
+  for (; joint.controller.is_settling(*joint.data); joint.tick()) {
+    ASSERT_EQ(joint.data->output.error_norm, 0) << ticks;
+    ASSERT_LT(++ticks, 60);
+  }
+  EXPECT_GT(ticks, 40);
+  EXPECT_EQ(joint.data->monitor.tick - joint.data->run_ticks, begin);
+  joint.ticks(5);
+  EXPECT_EQ(joint.data->monitor.tick - joint.data->run_ticks, begin);
+  EXPECT_GT(joint.data->output.error_norm, 0);
+}
+
 // GIVEN an encoder that once says what cannot be WHEN that passes THEN nothing of it is used; a
 // third one in a row is a fault with its number.
 TEST(ImplausiblePosition, EntersNeitherSampleNorVelocity) {

@@ -193,19 +193,6 @@ TEST(SampleTaker, JudgesAllJointsAtOneTimeWhereOneSendsNoVelocity) {
   EXPECT_EQ(&joints.data.judged(), &joints.data.sample);
 }
 
-TEST(SampleTaker, TakesTheTorqueThatBeginsForWhatWasThereForLong) {
-  TwoJoints joints;
-  joints.feedback[0].reading.has_velocity = false;
-  for (int i = 0; i < 100; ++i) joints.read(0, 0);
-  TwoJoints::Taker::begin_torque(0, 7.0, joints.data);
-  EXPECT_EQ(joints.data.sample.tau[0], 7);
-  EXPECT_EQ(joints.data.judged().tau[0], 7);
-  joints.feedback[0].status.applied_torque = 7;
-  joints.read(0, 0);
-  EXPECT_EQ(joints.data.judged().tau[0], 7);
-  EXPECT_EQ(joints.data.judged().tau[1], 0);
-}
-
 // In float: a position that can be, and a velocity that is beyond the largest number.
 TEST(SampleTaker, ObservesAnewFromWhatTheObserverCannotFollow) {
   ControllerConfig<1, float> config;

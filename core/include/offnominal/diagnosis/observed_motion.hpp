@@ -33,7 +33,7 @@ struct ObservedMotion {
   Scalar torque{};    // N m or N
 };
 
-// As if the torque had been `torque`, N m or N, for long: of a joint that is held.
+// As if the torque had been `torque`, N m or N, for long.
 template <typename Scalar>
 void begin_torque(Scalar torque, ObservedMotionState<Scalar>& state) {
   state.torque_once = state.torque_twice = torque;

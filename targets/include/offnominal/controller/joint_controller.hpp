@@ -159,6 +159,14 @@ class JointController {
                       : Pace<Scalar>{};
   }
 
+  // Armed, and what is judged is still of a time in which something else may have held the arm: of
+  // observed velocities, positions and torques, for as long as these settle. The watch begins anew
+  // with every sample until then.
+  [[nodiscard]] bool is_settling(const Data& data) const {
+    return data.observes && data.state == ControllerState::kArmed && data.drives_follow &&
+           !samples_.has_forgotten(data.run_ticks);
+  }
+
   // The monitor has its own: monitor().config().
   [[nodiscard]] const ControlConfig<N, Scalar>& config() const { return config_; }
   [[nodiscard]] const Watch& monitor() const { return monitor_; }
@@ -307,7 +315,7 @@ class JointController {
     // Until every drive follows nobody knows which torque acts, and until it is what is wanted,
     // brakes or whatever else held the arm still do: the watch begins with each sample anew.
     if (armed && !data.drives_follow) data.monitor.initialised = false;
-    const bool follows = data.monitor.initialised && data.unseen_ticks == 0;
+    const bool follows = data.monitor.initialised && data.unseen_ticks == 0 && !is_settling(data);
     const bool has_acted = data.output.detector.acts;
     const Fault fault =
         follows ? fault_of(monitor_.step(data.judged(), data.transforms, data.monitor, data.output))
@@ -353,10 +361,20 @@ class JointController {
     return true;
   }
 
+  // The run's time goes on.
+  [[nodiscard]] Status begin_again(Data& data) const {
+    const std::uint64_t tick = data.monitor.tick;
+    const Status status = monitor_.reset(data.judged(), data.transforms, data.monitor);
+    if (status != Status::kOk) return status;
+    data.monitor.tick = tick;
+    return monitor_.resume(data.judged(), data.transforms, data.unseen_ticks, data.monitor);
+  }
+
   // The first sample, or the first one after some that nobody saw.
   template <typename ReferenceAt>
   [[nodiscard, gnu::noinline]] Fault begin_watch(const ReferenceAt& reference_at, bool armed,
                                                  Data& data) const {
+    if (is_settling(data) && data.monitor.initialised) return fault_of(begin_again(data));
     if (data.monitor.initialised) {
       return fault_of(
           monitor_.resume(data.judged(), data.transforms, data.unseen_ticks, data.monitor));
@@ -392,11 +410,13 @@ class JointController {
     if (fault != Fault::kNone) return fault;
     Vector<N, Scalar> wanted = zeros<N, Scalar>(static_cast<Eigen::Index>(joints()));
     const Fault refusal = want_torque(reference_at, data, wanted);
-    for (std::size_t j = 0; j < joints(); ++j) {
-      if constexpr (Watch::kRemembers) {
+    if constexpr (Watch::kRemembers) {
+      for (std::size_t j = 0; j < joints(); ++j) {
         if (delay_of_joint(chain(), j) > 0) continue;
+        data.sample.tau[static_cast<Eigen::Index>(j)] = wanted[static_cast<Eigen::Index>(j)];
       }
-      samples_.begin_torque(j, wanted[static_cast<Eigen::Index>(j)], data);
+    } else {
+      data.sample.tau = wanted;
     }
     return refusal;
   }

@@ -128,20 +128,19 @@ class SampleTaker {
     }
   }
 
-  // What joint `joint` is given from now on, N m or N, held at rest until now.
-  static void begin_torque(std::size_t joint, Scalar torque, Data& data) {
-    const auto i = static_cast<Eigen::Index>(joint);
-    data.sample.tau[i] = torque;
-    if (!data.observes) return;
-    data.observed.tau[i] = torque;
-    offnominal::begin_torque(torque, data.motion[joint]);
-  }
-
   // Every velocity is one that was sent, or that the observer knows by now.
   [[nodiscard]] bool is_settled(const Data& data) const {
     return std::all_of(data.motion.begin(), data.motion.end(), [&](const auto& motion) {
       return motion.observer.updates == 0 || offnominal::is_settled(observer_, motion.observer);
     });
+  }
+
+  // So many ticks ago nothing is judged of any more.
+  [[nodiscard]] bool has_forgotten(std::uint64_t ticks) const {
+    constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
+    VelocityObserverState<Scalar> since;
+    since.updates = static_cast<std::uint32_t>(std::min(ticks, kMost));
+    return offnominal::is_settled(observer_, since);
   }
 
   // Velocities have to be observed anew, and turns counted from what is carried.

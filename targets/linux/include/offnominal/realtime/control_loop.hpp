@@ -148,7 +148,7 @@ template <int N, int L, typename Scalar, typename Memory, typename Space, typena
 }  // namespace detail
 
 // Runs until it is asked to end, or what the configuration says. `timer` is a CycleTimer, or what
-// else has its wait(). The rows are those of the ticks with a fresh sample. No heap.
+// else has its wait(). The rows are those of the ticks with a sample to judge. No heap.
 template <int N, int L, typename Scalar, hal::Bus Bus, hal::DriveProtocol Drives, typename Timer,
           typename ReferenceAt, typename Space = AccelerationSpace,
           typename Isolates = WithoutIsolation>
@@ -191,7 +191,7 @@ class ControlLoop {
     now_us_ = tick.begin_us;
     parts_.controller.step(tick.begin_us, tick.late_ticks, parts_.reference_at, parts_.bus,
                            parts_.drives, parts_.data);
-    if (parts_.data.fresh) {
+    if (parts_.data.fresh && !parts_.controller.is_settling(parts_.data)) {
       parts_.recorder.keep(detail::row_of(parts_.controller, parts_.data, tick));
     }
     note(tick, parts_.bus.now() - tick.begin_us);
