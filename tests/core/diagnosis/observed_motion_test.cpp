@@ -111,7 +111,7 @@ TEST(ObservedMotion, BridgesAGapOfAConstantVelocityWithoutError) {
   EXPECT_NEAR(motion.position, stepped.position, 1e-9);
 }
 
-// Behind a gap that is too long, and where its joint begins to be held, what was is forgotten.
+// Behind a gap that is too long what was is forgotten.
 TEST(ObservedMotion, BeginsAnewWithItsTorque) {
   const ObserverConfig config{200, 0.001};
   MotionState state;
@@ -119,10 +119,6 @@ TEST(ObservedMotion, BeginsAnewWithItsTorque) {
   for (int i = 0; i < 100; ++i) {
     ASSERT_EQ(observe(config, 0.0, 5.0, 0, state, motion), Status::kOk);
   }
-  MotionState held = state;
-  begin_torque(-2.0, held);
-  ASSERT_EQ(observe(config, 0.0, -2.0, 0, held, motion), Status::kOk);
-  EXPECT_EQ(motion.torque, -2);
   ASSERT_EQ(observe(config, 1.0, -4.0, 6, state, motion), Status::kOk);
   EXPECT_EQ(state.observer.updates, 1U);
   EXPECT_EQ(motion.position, 1);

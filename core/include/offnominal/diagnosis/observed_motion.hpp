@@ -33,12 +33,6 @@ struct ObservedMotion {
   Scalar torque{};    // N m or N
 };
 
-// As if the torque had been `torque`, N m or N, for long.
-template <typename Scalar>
-void begin_torque(Scalar torque, ObservedMotionState<Scalar>& state) {
-  state.torque_once = state.torque_twice = torque;
-}
-
 // The position behind both low-passes, the mean over the last tick.
 template <typename Scalar>
 [[nodiscard]] Scalar position_of_velocity(const VelocityObserverConfig<Scalar>& config,
@@ -57,7 +51,7 @@ template <typename Scalar>
                              ObservedMotionState<Scalar>& state, ObservedMotion<Scalar>& motion) {
   const Status status = update(config, position, state.observer, missed);
   if (status != Status::kOk) return status;
-  if (state.observer.updates == 1) begin_torque(torque, state);
+  if (state.observer.updates == 1) state.torque_once = state.torque_twice = torque;
   const Scalar pole = exponential(-config.bandwidth_rad_s * config.period_s);
   Scalar before = state.torque_twice;
   // No more than the observer bridges.
