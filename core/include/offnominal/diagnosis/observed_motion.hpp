@@ -33,15 +33,6 @@ struct ObservedMotion {
   Scalar torque{};    // N m or N
 };
 
-// The position behind both low-passes, the mean over the last tick.
-template <typename Scalar>
-[[nodiscard]] Scalar position_of_velocity(const VelocityObserverConfig<Scalar>& config,
-                                          const VelocityObserverState<Scalar>& state) {
-  const Scalar pole = exponential(-config.bandwidth_rad_s * config.period_s);
-  const Scalar ticks = 2 * pole / (1 - pole) + Scalar(0.5);
-  return state.position - ticks * config.period_s * state.velocity;
-}
-
 // One tick, as update() of the observer, and with its errors; the state is then unchanged. `torque`
 // as it was during the tick, N m or N, taken for that of the missed ones too. Where the observer
 // starts, so does the torque.
@@ -60,8 +51,11 @@ template <typename Scalar>
     state.torque_once = torque + pole * (state.torque_once - torque);
     state.torque_twice = state.torque_once + pole * (state.torque_twice - state.torque_once);
   }
-  motion.position = position_of_velocity(config, state.observer);
+  // How far the mean over the last tick of what is behind both low-passes is behind the observer's
+  // position.
+  const Scalar ticks = 2 * pole / (1 - pole) + Scalar(0.5);
   motion.velocity = state.observer.velocity;
+  motion.position = state.observer.position - ticks * config.period_s * motion.velocity;
   motion.torque = (before + state.torque_twice) / 2;
   return Status::kOk;
 }

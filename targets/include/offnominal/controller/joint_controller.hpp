@@ -374,8 +374,8 @@ class JointController {
   template <typename ReferenceAt>
   [[nodiscard, gnu::noinline]] Fault begin_watch(const ReferenceAt& reference_at, bool armed,
                                                  Data& data) const {
-    if (is_settling(data) && data.monitor.initialised) return fault_of(begin_again(data));
     if (data.monitor.initialised) {
+      if (is_settling(data)) return fault_of(begin_again(data));
       return fault_of(
           monitor_.resume(data.judged(), data.transforms, data.unseen_ticks, data.monitor));
     }
